@@ -83,15 +83,15 @@ def moving(data: Data, numbers: Numbers) -> List[Tuple[str, str]]:
 
 def structures(data: Data) -> List[Tuple[str, str]]:
     """The largest lasting force on a structure."""
-    forces = [(numbers["mean_force_n"], name, per_metre(numbers, row.ball_m3 ** (1 / 3)) or 0.0)
+    forces = [(numbers["mean_force_n"], name, per_metre(numbers, row.ball_m3 ** (1 / 3)))
               for row in data.finished for name, numbers in row.structures.items()]
     if not forces:
         return []
-    force, name, _ = max(forces)
+    force, name = max(each[:2] for each in forces)
     if not force > 0:
         return [("force on structures", "nothing touches them")]
-    most = max(each for _, other, each in forces if other == name)
-    each = f", {digits.si(most, 'N')} per metre of the length that bears it" if most > 0 else ""
+    most, least = max((each or 0.0, least) for _, other, (each, least) in forces if other == name)
+    each = f", {'at least ' * least}{digits.si(most, 'N')} per metre of the length that bears it" if most > 0 else ""
     return [("largest force that lasts half a second", f"{digits.si(force, 'N')}, on {name}{each}")]
 
 

@@ -29,7 +29,8 @@ PREFIXED = ("N", "N/m", "N s", "N m", "Pa", "J")     # units that are written wi
 
 CAPTIONS = {
     "structures": "Loads on the structures. A mean over time is that of the mass, per metre of the length that bears "
-                  f"it ({100 * structures.BORNE:.0f} % of the impulse, evenly, {structures.FEW} balls at least); the "
+                  f"it ({100 * structures.BORNE:.0f} % of the impulse, evenly, {structures.FEW} balls at least; a "
+                  f"least where triangles longer than 1/{structures.PARTS} of it do not tell it: draw shorter); the "
                   "largest force, moment and pressure come from single impacts of the model's balls. The force at the "
                   "end depends on how the mass came to rest: about 0.5 times the pressure of a fluid of the same "
                   "weight where it stood before most of its weight came or where the structure gives way, 0.7 to 0.9 "
@@ -98,9 +99,11 @@ class Structures:
              ball_of(self.data))]
         for number, label, found, ball in each:
             for name, numbers in found.items():
-                if what == "structures":
-                    numbers = {**numbers, LENGTHWISE: structures.per_metre(numbers, ball ** (1 / 3))}
-                cells = [self.cell(f"{name}: {head}", unit, numbers.get(key), label)
+                per_metre, least = (structures.per_metre(numbers, ball ** (1 / 3)) if what == "structures" else
+                                    (None, False))
+                numbers = {**numbers, LENGTHWISE: per_metre}
+                cells = ["at least " * (least and key == LENGTHWISE)
+                         + self.cell(f"{name}: {head}", unit, numbers.get(key), label)
                          for head, unit, key in COLUMNS[what]]
                 rows.append([*([number] if study else []), name, *cells])
         heads = [*(["run"] if study else []), what[:-1],

@@ -6,7 +6,7 @@ this one's. Forces in N, times in s, pressures in Pa, volumes in m3 of ground, e
 import csv
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 from xml.etree import ElementTree
 
 import numpy as np
@@ -22,7 +22,9 @@ WINDOW = 0.5            # s, of the mean force: single impacts are those of the 
 SHARES = (0.5, 0.9, 0.95, 0.99)
 FEW = 5                 # balls: on a shorter length, or a lower structure, loads are those of one ball after another
 BORNE = 0.9             # of the impulse: what comes onto either end of a structure is of stray balls
+PARTS = 10              # of a length, of which those that bear least do not count; and its triangles must be as short
 SERIES = ("time", "fx", "fy", "fz", "jx", "jy", "jz", "contacts", "largest_force", "largest_moment")
+OLDER = ": of an older version? Then make the run again (a study with --anew)"
 FILES = {"structures": "structures.csv", "lines": "lines.csv"}
 SIDE = schemas.mapping(schemas.number_keys("volume", "crossings"))
 LINE = schemas.mapping({"forward": SIDE, "back": SIDE, "net_volume": schemas.NUMBER})
@@ -61,13 +63,14 @@ def outputs(settings: Sequence[str], style: str) -> Dict[str, str]:
     return found
 
 
-def table_of(path: Path, columns: Sequence[str]) -> Dict[str, np.ndarray]:
-    """Columns of a CSV that a fix wrote."""
+def table_of(path: Path, columns: Sequence[str], remedy: str = "") -> Dict[str, np.ndarray]:
+    """Columns of a CSV that a fix wrote; remedy: where its head has not all of them."""
     try:
         with open(path, encoding="ascii", newline="") as file:
             reader = csv.DictReader(file)
             if not set(columns) <= set(reader.fieldnames or ()):
-                raise ValueError(f"its first line is {','.join(reader.fieldnames or ())[:60]!r}")
+                lacks = ", ".join(name for name in columns if name not in (reader.fieldnames or ()))
+                raise ValueError(f"a first line without {lacks}{remedy}")
             rows = list(reader)
         # a height is empty where the terrain has none
         return {name: np.array([row[name] or "nan" for row in rows], float) for name in columns}
@@ -77,7 +80,7 @@ def table_of(path: Path, columns: Sequence[str]) -> Dict[str, np.ndarray]:
 
 
 def series(folder: Path, prefix: str) -> Series:
-    found = table_of(folder / f"{prefix}.csv", SERIES)
+    found = table_of(folder / f"{prefix}.csv", SERIES, OLDER)
     force, impulse = (np.stack([found[f"{letter}{axis}"] for axis in "xyz"], axis=-1) for letter in "fj")
     return Series(found["time"], force, impulse, found["contacts"], found["largest_force"], found["largest_moment"])
 
@@ -106,27 +109,36 @@ def crossings(folder: Path, prefix: str) -> Dict[str, np.ndarray]:
     return table_of(folder / f"{prefix}.line.csv", ("time", "direction", "speed", "height", "energy", "volume"))
 
 
-def bearing_length(corners: np.ndarray, impulse: np.ndarray) -> Tuple[float, float]:
-    """m in plan: the length of a structure, and that of the part which bears its load.
+class Bearing(NamedTuple):
+    """m in plan: the length of a structure; of its part that bears the load; of its triangles, a mean by load."""
+    length: float
+    part: float
+    triangle: float
 
-    The load: an impulse per area on each triangle (n, 3, 3), evenly. The part: as long as an even load is that has
-    BORNE of it, in the middle, on the same length.
+
+def bearing_length(corners: np.ndarray, impulse: np.ndarray) -> Bearing:
+    """Of triangles (n, 3, 3) with an impulse per area (n), even on each.
+
+    The part: as long as an even load is that has BORNE of it, in the middle, on the same length; and of that length
+    the PARTS that bear BORNE again, as two streams load no wall between them.
     """
     outline = MultiPoint(corners[..., :2].reshape(-1, 2)).minimum_rotated_rectangle
     sides = np.diff(np.asarray(getattr(outline, "exterior", outline).coords), axis=0)
     length = float(np.hypot(*sides.T).max(initial=0.0))
-    if not length > 0:
-        return 0.0, 0.0
-    along = corners[..., :2] @ (sides[np.hypot(*sides.T).argmax()] / length)
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
     load = np.maximum(impulse * area, 0.0)
+    if not (length > 0 and load.sum() > 0):
+        return Bearing(length, 0.0, 0.0)
+    along = corners[..., :2] @ (sides[np.hypot(*sides.T).argmax()] / length)
     low, high = along.min(axis=1), along.max(axis=1) + 1e-6 * length    # upright across it: no length
-    each = load / (high - low)
     at, index = np.unique(np.concatenate([low, high]), return_inverse=True)
-    rate = np.cumsum(np.bincount(index, np.concatenate([each, -each])))[:-1]
+    rate = np.cumsum(np.bincount(index, np.concatenate([load / (high - low), -load / (high - low)])))[:-1]
     before = np.concatenate([[0.0], np.cumsum(rate * np.diff(at))])
     ends = np.interp(load.sum() * np.array([(1 - BORNE) / 2, (1 + BORNE) / 2]), before, at)
-    return length, float(min(length, (ends[1] - ends[0]) / BORNE))
+    parts = np.sort(np.diff(np.interp(np.linspace(ends[0], ends[1], PARTS + 1), at, before)))[::-1]
+    most = np.interp(BORNE, np.concatenate([[0.0], np.cumsum(parts) / parts.sum()]), np.arange(PARTS + 1) / PARTS)
+    return Bearing(length, float(min(length, most * (ends[1] - ends[0]) / BORNE ** 2)),
+                   float(np.average(high - low, weights=load)))
 
 
 # --- a run ---
@@ -137,7 +149,8 @@ def of_structure(folder: Path, prefix: str) -> Dict[str, Any]:
     time, mean = forces.mean_force()
     numbers: Dict[str, Any] = {"largest_force_n": 0.0, "at_s": None, "mean_force_n": 0.0, "mean_at_s": None,
                                "end_force_n": 0.0, "end_contacts": 0, "impulse_ns": 0.0, "moment_nm": 0.0,
-                               "length_m": None, "bearing_m": None, "largest_pressure_pa": 0.0, "pressure_at": None}
+                               "length_m": None, "bearing_m": None, "triangle_m": None,
+                               "largest_pressure_pa": 0.0, "pressure_at": None}
     if len(time) and forces.largest.max() > 0:
         numbers.update(largest_force_n=float(forces.largest.max()), at_s=float(time[forces.largest.argmax()]),
                        mean_force_n=float(mean.max()), mean_at_s=float(time[mean.argmax()]),
@@ -147,17 +160,21 @@ def of_structure(folder: Path, prefix: str) -> Dict[str, Any]:
     largest = pressure["largest_pressure"]
     if len(largest) and largest.max() > 0:
         k = int(largest.argmax())
-        length, bearing = bearing_length(*polydata(folder / f"{prefix}.vtp", "impulse"))
-        numbers.update(length_m=length, bearing_m=bearing, largest_pressure_pa=float(largest[k]),
-                       pressure_at=[float(pressure[axis][k]) for axis in "xyz"])
+        bearing = bearing_length(*polydata(folder / f"{prefix}.vtp", "impulse"))
+        numbers.update(length_m=bearing.length, bearing_m=bearing.part, triangle_m=bearing.triangle,
+                       largest_pressure_pa=float(largest[k]), pressure_at=[float(pressure[axis][k]) for axis in "xyz"])
     return numbers
 
 
-def per_metre(numbers: Mapping[str, Any], ball: float) -> Optional[float]:
+def per_metre(numbers: Mapping[str, Any], ball: float) -> Tuple[Optional[float], bool]:
     """N/m: the largest lasting force of a structure over the length that bears it, FEW balls (m) at least, if it is as
-    long; None where nothing touched it."""
+    long, and whether that is a least, as its triangles are too long to say which; None where nothing touched it."""
     length = numbers.get("length_m")
-    return numbers["mean_force_n"] / max(numbers["bearing_m"], min(FEW * ball, length)) if length else None
+    if not length:
+        return None, False
+    bearing, few = numbers["bearing_m"], min(FEW * ball, length)
+    return (numbers["mean_force_n"] / max(bearing, few),
+            bearing > few and (numbers.get("triangle_m") or 0.0) > bearing / PARTS)
 
 
 def of_line(folder: Path, prefix: str) -> Dict[str, Any]:
