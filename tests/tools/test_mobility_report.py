@@ -186,6 +186,11 @@ def test_of_which_runs_the_reach_is():
     one = how_far.reach(rows, Source.SWEEP, Known(None, "no path"))
     assert (one.runs, one.near_m, one.far_m, one.source, one.why) == (2, 60.0, None, "paper", "no path")
     assert how_far.reach(rows[1:3], None, Known(None, "")) is None
+    # all of the mass of a run left: no deposit, and farther than any
+    gone = made_rows.row(length_m=None, length_is=None, lost_m3=1000.0)
+    one = how_far.reach([*rows[1:3], made_rows.row(length_m=60.0), gone], Source.SWEEP, Known(None, ""))
+    assert (one.runs, one.near_m, one.middle_m, one.far_m) == (2, 60.0, 60.0, None)
+    assert how_far.reach([gone], None, Known(None, "")).middle_m is None
     # of more than a tenth that were cut short nobody knows
     for short, known_ in ((1, True), (2, False)):
         rows = [made_rows.row(length_m=60.0 + k, at_rest=k >= short) for k in range(10)]

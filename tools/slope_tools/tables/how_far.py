@@ -53,7 +53,7 @@ def known_of(prefix: Path, terrain: Optional[Path], choice: Mapping[str, Any],
 
 def reach(rows: Sequence[Finished], source: Optional[entries.Source], among: known.Known) -> Optional[Reach]:
     """How far the mass of runs goes, without those that were added for their length; source: None of a run alone."""
-    mine = [row for row in rows if row.length_m is not None and not row.batch]
+    mine = [row for row in rows if (row.length_m is not None or row.left_box) and not row.batch]
     lengths = [math.inf if row.left_box else row.length_m or 0.0 for row in mine]
     pooled = pool(lengths, among.found and among.found.decides, source.value if source else None,
                   mine[0].length_is or ON_PATH if mine else ON_PATH, among.why)
