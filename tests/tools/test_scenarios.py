@@ -277,6 +277,17 @@ def test_every_road_has_a_column(here, tmp_path):
                                                ["-", "-", "not studied as it is"]]
 
 
+def test_of_a_run_that_was_cut_short_how_far_is_a_least(here, tmp_path):
+    mine = compare.read_scenarios(Path("mine"))[0]
+    for about, least in (({}, ""), ({"at_rest": False}, "at least "), ({"lost_m3": 500.0}, "at least ")):
+        study = sweep_of(1000.0)
+        one = mine._replace(studied=of_roads(tmp_path, **{"": {"study": replace(study, runs=[
+            study.runs[0], replace(study.runs[1], **about)])}}))
+        _, far, length, *_ = page.list_scenario_numbers(one, ["study"], [""])
+        assert [text[:-len(text.split()[-1])] for text in (far, length)] == [least, least]
+        assert float(far.split()[-1]) > 0 and float(length.split()[-1]) > 0
+
+
 def test_studies_are_read_of_each_road(here, monkeypatch):
     """Both where one command made them, else the one that governs."""
     site = compare.read_scenarios(Path("mine"))[0].site

@@ -104,7 +104,9 @@ def list_scenario_numbers(scenario: One, names: Sequence[str], roads: Sequence[s
     first = next(iter(studied.roads.values()))
     finished, far = method.list_finished_rows(first, names), method.find_farthest_reach(first, names)
     length = how_far.longest(finished)
-    return [released, "unknown" if far is None else digits.three(far), "-" if length is None else digits.three(length),
+    least = "at least " * any(row.left_box or not row.at_rest for row in finished)
+    return [released, "unknown" if far is None else least + digits.three(far),
+            "-" if length is None else least + digits.three(length),
             *(to_remove(method.headline_of(studied.roads[road], names)) if road in studied.roads else "-"
               for road in roads), f"{len(finished)} of {sum(len(about.runs) for about in method.taken(first, names))}"]
 
