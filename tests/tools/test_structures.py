@@ -15,6 +15,7 @@ from tiny_collapse import LMP, edit, rows_of, write_case, write_stl
 from slope_tools import cli, digits, errors
 from slope_tools.plots import figure_structures
 from slope_tools.plots.obstacles import Obstacles
+from slope_tools.report import client_part
 from slope_tools.report import structures_part as report_structures
 from slope_tools.tables import structures
 
@@ -111,6 +112,17 @@ def test_report_draws_them(studied, capsys, blank_pictures):
     blank_pictures()
     assert slope(f"report {studied} --run wall_1 -o {studied}/one.html", capsys)[0] == 0
     assert (studied / "one.html").read_text().count('alt="Largest pressure on wall"') == 1
+
+
+@pytest.mark.parametrize("moving", [False, True])
+def test_of_runs_that_end_in_motion_a_force_is_a_least(moving):
+    numbers = {"mean_force_n": 4e6, "length_m": 20.0, "bearing_m": 10.0, "triangle_m": 0.5}
+    for force, whole, cut in ((4e6, "4.00 MN, on wall, 400 kN per metre of the length that bears it",
+                               "at least 4.00 MN, on wall, at least 400 kN per metre of the length that bears it"),
+                              (0.0, "nothing touches them", "nothing touches them before the runs end, in motion")):
+        rows = [made_rows.row(structures={"wall": {**numbers, "mean_force_n": force}}, ball_m3=1.0, moving=moving)]
+        (_, text), = client_part.structures(SimpleNamespace(finished=rows))
+        assert text == (cut if moving else whole)
 
 
 def test_a_single_run_is_reported_too(studied, capsys, blank_pictures):

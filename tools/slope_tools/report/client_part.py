@@ -88,11 +88,14 @@ def structures(data: Data) -> List[Tuple[str, str]]:
     if not forces:
         return []
     force, name = max(each[:2] for each in forces)
+    in_motion = any(row.moving for row in data.finished)
     if not force > 0:
-        return [("force on structures", "nothing touches them")]
+        return [("force on structures", "nothing touches them" + " before the runs end, in motion" * in_motion)]
     most, least = max((each or 0.0, least) for _, other, (each, least) in forces if other == name)
-    each = f", {'at least ' * least}{digits.si(most, 'N')} per metre of the length that bears it" if most > 0 else ""
-    return [("largest force that lasts half a second", f"{digits.si(force, 'N')}, on {name}{each}")]
+    text = f"{'at least ' * in_motion}{digits.si(force, 'N')}, on {name}"
+    if most > 0:
+        text += f", {'at least ' * (least or in_motion)}{digits.si(most, 'N')} per metre of the length that bears it"
+    return [("largest force that lasts half a second", text)]
 
 
 def mapped(data: Data, numbers: Numbers) -> List[Tuple[str, str]]:
