@@ -191,7 +191,12 @@ def result_of(runs: Sequence[Run], widths: Sequence[float]) -> Result:
     away = int((left & ~ahead[AT_ROAD]).sum()) if reach else 0
     behind, beyond = joined(lambda run: run.behind), joined(lambda run: run.travel[DITCH])
     open_ = (left | moving) & ~behind
-    retained = [share(behind | ~open_ & (beyond <= width + 1e-9), open_) for width in widths]
+
+    def keeps(kept: np.ndarray) -> Share:
+        """Of a ditch: what it does not keep has its bounds, those of none seen too, which a wider one has as well."""
+        one = share(kept, open_)
+        return replace(one, low=min(one.low, 1 - share(~kept & ~open_, open_).high))
+    retained = [keeps(behind | ~open_ & (beyond <= width + 1e-9)) for width in widths]
     return Result(runs[0].rolling, len(ground), len(runs), int(left.sum()), away, int(moving.sum()),
                   int(still.sum()), reach, past, crossed,
                   {name: one for name, one in travel.items() if one},
