@@ -213,6 +213,21 @@ def test_a_shorter_length_than_a_few_balls_bears_the_load_of_single_ones():
     assert structures.bearing_length(wall_of(4, 1), np.zeros(8)) == (4, 0, 0)
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.4, 2.0])
+def test_a_pier_that_is_hit_on_its_end_is_as_long_as_that_is_wide(turn):
+    """2 m wide and 10 m long, along the flow; then hit on a flank, from above, and from all around."""
+    cos, sin = np.cos(turn), np.sin(turn)
+    end, flank = wall_of(2, 0.5) @ [[0, 1, 0], [-1, 0, 0], [0, 0, 1]], wall_of(10, 0.5)
+    top = np.array([[[0, 0, 2], [10, 0, 2], [10, 2, 2]], [[0, 0, 2], [10, 2, 2], [0, 2, 2]]], float)
+    pier = np.concatenate([end, flank, top]) @ np.array([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1]])
+    on = np.repeat([0, 1, 2], [len(end), len(flank), len(top)])
+    for load, length in ((on == 0, 2), (on == 1, 10), (on == 2, 10), (np.where(on == 0, 5, on == 1), 10), (on < 0, 10)):
+        bearing = structures.bearing_length(pier, 3.0 * load)
+        assert bearing.length == pytest.approx(length, rel=1e-6)
+    numbers = {"mean_force_n": 60.0, "length_m": 2.0, "bearing_m": 2.0}
+    assert structures.per_metre(numbers, 1.0)[0] == 30
+
+
 def test_long_triangles_do_not_tell_what_bears_the_load():
     """A wall of 40 m in two triangles, of which 10 m in the middle may be hit."""
     whole, bearing, triangle = structures.bearing_length(wall_of(40, 40.0), np.ones(2))

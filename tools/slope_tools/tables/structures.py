@@ -110,7 +110,8 @@ def crossings(folder: Path, prefix: str) -> Dict[str, np.ndarray]:
 
 
 class Bearing(NamedTuple):
-    """m in plan: the length of a structure; of its part that bears the load; of its triangles, a mean by load."""
+    """m in plan: the width of a structure across its load; of its part that bears this; of its triangles, a mean by
+    load."""
     length: float
     part: float
     triangle: float
@@ -122,14 +123,13 @@ def bearing_length(corners: np.ndarray, impulse: np.ndarray) -> Bearing:
     The part: as long as an even load is that has BORNE of it, in the middle, on the same length; and of that length
     the PARTS that bear BORNE again, as two streams load no wall between them.
     """
-    outline = MultiPoint(corners[..., :2].reshape(-1, 2)).minimum_rotated_rectangle
-    sides = np.diff(np.asarray(getattr(outline, "exterior", outline).coords), axis=0)
-    length = float(np.hypot(*sides.T).max(initial=0.0))
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(normal, axis=1) / 2
     load = np.maximum(impulse * area, 0.0)
+    along = corners[..., :2] @ across_load(corners, normal / np.maximum(2 * area[:, None], 1e-30), load)
+    length = float(np.ptp(along))
     if not (length > 0 and load.sum() > 0):
         return Bearing(length, 0.0, 0.0)
-    along = corners[..., :2] @ (sides[np.hypot(*sides.T).argmax()] / length)
     low, high = along.min(axis=1), along.max(axis=1) + 1e-6 * length    # upright across it: no length
     at, index = np.unique(np.concatenate([low, high]), return_inverse=True)
     rate = np.cumsum(np.bincount(index, np.concatenate([load / (high - low), -load / (high - low)])))[:-1]
@@ -139,6 +139,18 @@ def bearing_length(corners: np.ndarray, impulse: np.ndarray) -> Bearing:
     most = np.interp(BORNE, np.concatenate([[0.0], np.cumsum(parts) / parts.sum()]), np.arange(PARTS + 1) / PARTS)
     return Bearing(length, float(min(length, most * (ends[1] - ends[0]) / BORNE ** 2)),
                    float(np.average(high - low, weights=load)))
+
+
+def across_load(corners: np.ndarray, normal: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Direction in plan, of length 1: across what the triangles, by their normals, are loaded from; along the longest
+    side of the structure where that comes from all around."""
+    (less, most), directions = np.linalg.eigh((load * normal[:, :2].T) @ normal[:, :2])
+    if most > 2 * less:
+        return np.asarray(directions[:, 0])
+    outline = MultiPoint(corners[..., :2].reshape(-1, 2)).minimum_rotated_rectangle
+    sides = np.diff(np.asarray(getattr(outline, "exterior", outline).coords), axis=0)
+    lengths = np.hypot(*sides.T)
+    return np.asarray(sides[lengths.argmax()] / lengths.max()) if lengths.max(initial=0.0) > 0 else np.zeros(2)
 
 
 # --- a run ---
