@@ -503,7 +503,7 @@ def test_a_ditch_is_wider_by_its_bound():
         assert np.mean(beyond <= at) >= 0.9 > np.mean(beyond <= at - 5) and low <= at
         assert high is None if grounds == 10 else high > at
         lows = [share.low for share in one.retained]
-        assert np.diff(lows).min() > -1e-9 and lows[-1] == pytest.approx(1 - one.reach.high)      # none reaches the road
+        assert np.diff(lows).min() > -1e-9 and lows[-1] == pytest.approx(1 - one.reach.high)    # none reaches the road
         assert page.widths(SimpleNamespace(outcome=of)).rows[0][3] == (
             f"{at:g} m ({low:g} m to {'?' if high is None else f'{high:g} m'})")
 
