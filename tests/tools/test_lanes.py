@@ -510,6 +510,7 @@ def test_stretches_of_a_study_are_unions_with_shares_and_quantiles():
     ("--road polygon.geojson --road-width 4", "polygon.geojson: must hold a line: leave out --road-width"),
     ("--road line.geojson --road-width 4 --axis line.geojson", "--axis: must not be given with --road-width"),
     ("--road line.geojson --road-width none", "argument --road-width: must be a finite number, got 'none'"),
+    ("--road line.geojson --road-width 1_5", "argument --road-width: must be a finite number, got '1_5'"),
 ])
 def test_bad_input_is_one_line(slope, here, arguments, message):
     write_run(patches(), 0.0, 2.0)

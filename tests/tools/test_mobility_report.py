@@ -208,6 +208,11 @@ def test_nearer_than_events_tell_the_distance_may_be_less(known):
     one = how_far.pool([2 * least], dropped)
     assert one.least_m == least >= one.near_m and one.middle_m > least
     assert f"({three(least)} m or less to " in letter.describe_reach(one, letter.format_console_number)
+    # where half of all go beyond the terrain, nothing nearer is said
+    curve[k:] = np.linspace(0.8, 0.4, len(said) - k)
+    one = how_far.pool([math.inf], dropped)
+    text = letter.describe_reach(one, letter.format_console_number)
+    assert (one.near_m <= least, one.middle_m) == (True, None) and text.startswith("It goes in half of all cases bey")
 
 
 # --- on maps and section ---

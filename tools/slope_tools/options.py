@@ -13,13 +13,14 @@ import argparse
 import dataclasses
 import inspect
 import json
-import math
 import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Type, TypeVar, Union, get_args, get_origin
 from typing import get_type_hints
+
+from . import heads
 
 MOST = 10 ** 9      # of anything counted; more exceeds any memory or time
 R = TypeVar("R")
@@ -169,13 +170,9 @@ def bare(asked: Any) -> bool:
 
 def parse_number(text):
     """argparse type: a finite number."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
+    if not heads.is_number(text):
         raise argparse.ArgumentTypeError(f"must be a finite number, got {text!r}")
-    return value
+    return float(text)
 
 
 def parse_whole_number(text):

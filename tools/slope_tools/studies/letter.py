@@ -312,7 +312,7 @@ def describe_distances(reach: Reach, write: Write) -> str:
     if near == last:
         return f"It goes {middle}"
     if reach.middle_m is None:
-        return f"It goes {near} or more, in half of all cases {middle},"
+        return f"It goes {'' if near.endswith('or less') else f'{near} or more, '}in half of all cases {middle},"
     return f"It goes about {middle} ({near.removesuffix(' m') if last.endswith(' m') else near} to {last})"
 
 
