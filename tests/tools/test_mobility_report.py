@@ -1,5 +1,6 @@
 """What a report says of known events: where its runs lie, or that no set covers them."""
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, Dict, NamedTuple
 
@@ -21,6 +22,7 @@ from slope_tools.report.numbers import Numbers
 from slope_tools.statistics.entries import Source
 from slope_tools.studies import letter
 from slope_tools.tables import how_far
+from slope_tools.tables.rows import Failed
 
 
 def case(lengths, volume=0.78e6, study=True, scar=1, **about):
@@ -196,6 +198,17 @@ def test_of_which_runs_the_reach_is():
         rows = [made_rows.row(length_m=60.0 + k, at_rest=k >= short) for k in range(10)]
         text = letter.describe_reach(how_far.reach(rows, Source.SWEEP, Known(None, "")), letter.format_console_number)
         assert text.startswith("It goes about") == known_ and (f"{short} of 10 runs had not come" in text) != known_
+
+
+def test_of_more_than_a_tenth_that_failed_nobody_knows_how_far():
+    bad = Failed("a", {}, {}, 0, "lost atoms")
+    for failed, short, known_ in ((1, 0, True), (1, 1, False), (2, 0, False)):
+        rows = [*[bad] * failed, replace(bad, batch=1), *(
+            made_rows.row(length_m=60.0 + k, at_rest=k >= short) for k in range(10 - failed))]
+        one = how_far.reach(rows, Source.SWEEP, Known(None, ""))
+        text = letter.describe_reach(one, letter.format_console_number)
+        assert (one.runs, one.failed, one.cut) == (10 - failed, failed, short)
+        assert text.startswith("It goes about") == known_ and ("2 of 10 runs failed or had not come" in text) != known_
 
 
 def test_nearer_than_events_tell_the_distance_may_be_less(known):

@@ -292,13 +292,15 @@ def describe_reach(reach: Optional[Reach], write: Write, settings: str = "") -> 
     """One sentence on how far, and by what rule; settings: of those of an ensemble, where not by their source."""
     if reach is None:
         return "How far it goes is not known: no run leaves a deposit."
-    if reach.cut > UNFINISHED * reach.runs:
-        return f"How far it goes is not known: {reach.cut} of {counted(reach.runs)} had not come to rest at their end."
+    runs = reach.runs + reach.failed
+    if reach.cut + reach.failed > UNFINISHED * runs:
+        return (f"How far it goes is not known: {reach.cut + reach.failed} of {counted(runs)} "
+                f"{'failed or ' * (reach.failed > 0)}had not come to rest at their end.")
     of_ensemble = reach.source == Source.ENSEMBLE.value
-    runs = counted(reach.runs, settings if settings and of_ensemble else ALIKE.get(reach.source or "", ""))
-    rule = f"by {runs}"
+    whose = counted(reach.runs, settings if settings and of_ensemble else ALIKE.get(reach.source or "", ""))
+    rule = f"by {whose}"
     if reach.events:
-        rule = f"{runs} and {EVENTS} count half each; {percent(TAIL)} end before these bounds, {percent(TAIL)} beyond"
+        rule = f"{whose} and {EVENTS} count half each; {percent(TAIL)} end before these bounds, {percent(TAIL)} beyond"
     text = f"{describe_distances(reach, write)} {reach.along} from the crown. {capital(rule)}"
     if reach.farther:
         text += f" The two differ by more than their bands: {reach.farther} go farther."

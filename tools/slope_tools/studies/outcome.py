@@ -194,7 +194,7 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
         observed=read.observed,
         roads=[dict(one) for one in questions.roads], warnings=collect_study_warnings(questions, read), runs=rows,
         headline=None,
-        reach=how_far.reach(finished, source, read.among),
+        reach=how_far.reach(rows, source, read.among),
         stretches=evaluate_stretches(
             finished, events.weights if (events := ensemble_types.weighted(weighted)) else None)
         if read.road and finished else None,

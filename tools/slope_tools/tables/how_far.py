@@ -15,7 +15,7 @@ from ..mobility import fall_path, known
 from ..mobility.known import Mobility
 from ..mobility.run_length import ON_PATH
 from ..statistics import entries
-from .rows import Finished
+from .rows import Finished, Row, finished_of
 
 TAIL = 0.05             # of the pool, which ends before near_m and goes beyond far_m
 BAND = 0.1              # of each of both, whose bands may lie apart
@@ -27,7 +27,8 @@ class Reach:
 
     runs: how many, of which study (entries.Source; None: a run alone); along: run_length.ON_PATH or STRAIGHT; events:
     whether known events count; why: not; farther: who goes farther, where the bands lie apart; least_m: nearer the
-    events tell nothing; cut: how many of the runs were not at rest when they ended, and may go farther.
+    events tell nothing; cut: how many of the runs were not at rest when they ended, and may go farther;
+    failed: others, of which nobody knows.
     """
     near_m: Optional[float]
     middle_m: Optional[float]
@@ -41,6 +42,7 @@ class Reach:
     why: str
     farther: Optional[str]
     cut: int = 0
+    failed: int = 0
 
 
 def known_of(prefix: Path, terrain: Optional[Path], choice: Mapping[str, Any],
@@ -51,13 +53,15 @@ def known_of(prefix: Path, terrain: Optional[Path], choice: Mapping[str, Any],
     return known.of_mass(read.raster, *deposit.find_ground_before(read.raster, read.base, terrain), choice, site)
 
 
-def reach(rows: Sequence[Finished], source: Optional[entries.Source], among: known.Known) -> Optional[Reach]:
+def reach(rows: Sequence[Row], source: Optional[entries.Source], among: known.Known) -> Optional[Reach]:
     """How far the mass of runs goes, without those that were added for their length; source: None of a run alone."""
-    mine = [row for row in rows if (row.length_m is not None or row.left_box) and not row.batch]
+    planned = [row for row in rows if not row.batch]
+    mine = [row for row in finished_of(planned) if row.length_m is not None or row.left_box]
     lengths = [math.inf if row.left_box else row.length_m or 0.0 for row in mine]
     pooled = pool(lengths, among.found and among.found.decides, source.value if source else None,
                   mine[0].length_is or ON_PATH if mine else ON_PATH, among.why)
-    return pooled and replace(pooled, cut=sum(not row.at_rest for row in mine))
+    return pooled and replace(pooled, cut=sum(not row.at_rest for row in mine),
+                              failed=len(planned) - len(finished_of(planned)))
 
 
 def pool(lengths: Sequence[float], known: Optional[Mobility], source: Optional[str] = None, along: str = ON_PATH,
