@@ -19,7 +19,7 @@
 using namespace LAMMPS_NS;
 using namespace Slope;
 
-static constexpr size_t HEAD = 4;       // numbers of pack() before those of the loads
+static constexpr size_t HEAD = 5;       // numbers of pack() before those of the loads
 static constexpr int BOTH = 6;          // numbers of a force and a moment
 static constexpr double GROWN = 1.5;    // rows over those in the file that make it worth writing
 
@@ -90,7 +90,7 @@ void SurfaceRecorder::add_row(double time, const double *values)
 
 SurfaceLoads::Row SurfaceRecorder::row_of(double time, const double *values) const
 {
-  SurfaceLoads::Row row;
+  SurfaceLoads::Row row = {};
   row.step = static_cast<double>(update->ntimestep);
   row.time = time;
   std::copy_n(values, 10, row.force);    // and what follows it
@@ -125,7 +125,7 @@ void SurfaceRecorder::write(const SurfaceLoads::Row *end)
 std::vector<double> SurfaceRecorder::pack()
 {
   send();
-  std::vector<double> list = {nrow, largest[0], largest[1], steps};
+  std::vector<double> list = {nrow, largest[0], largest[1], steps, at_row};
   const std::vector<double> more = loads.pack();
   list.insert(list.end(), more.begin(), more.end());
   return list;
@@ -139,6 +139,7 @@ void SurfaceRecorder::unpack(const std::vector<double> &numbers)
     loads.unpack(numbers.data() + HEAD, numbers.size() - HEAD, surface.count());
   });
   nrow = written = numbers[0];
-  steps = at_row = numbers[3];
+  steps = numbers[3];
+  at_row = numbers[4];
   if (comm->me == 0) std::copy_n(&numbers[1], 2, largest);
 }

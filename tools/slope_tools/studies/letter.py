@@ -295,7 +295,7 @@ def describe_reach(reach: Optional[Reach], write: Write, settings: str = "") -> 
     runs = reach.runs + reach.failed
     if reach.cut + reach.failed > UNFINISHED * runs:
         return (f"How far it goes is not known: {reach.cut + reach.failed} of {counted(runs)} "
-                f"{'failed or ' * (reach.failed > 0)}had not come to rest at their end.")
+                f"{'failed or ' * (reach.failed > 0)}had not come to rest at the end.")
     of_ensemble = reach.source == Source.ENSEMBLE.value
     whose = counted(reach.runs, settings if settings and of_ensemble else ALIKE.get(reach.source or "", ""))
     rule = f"by {whose}"
