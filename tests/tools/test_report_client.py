@@ -123,8 +123,8 @@ SAID = {"number": ("35,800 m³ must be cleared from the road; within the model t
                         "The road begins after 2,400 m: 20 % to 30 % of known events of this volume and height, and "
                         "none of 6 runs of both kinds, reach it.", "Next step: a larger elevation model"),
         "withheld": ("come down, up to", "How far it goes is not known: ", "The road begins",
-                     "How much must be cleared from the road is not known. More than a tenth of the runs failed, or had not come to rest when they ended "
-                     "(runs with chosen settings).",
+                     "How much must be cleared from the road is not known. More than a tenth of the runs failed, or "
+                     "had not come to rest when they ended (runs with chosen settings).",
                      "Next step: more time for the mass to come to rest, about"),
         "nothing": ("0 m³ must be cleared from the road, by these runs: in none does anything come to lie on it.",
                     "2 % to 7 % of known events of this volume and height, and none of 6 runs of both kinds, reach "
