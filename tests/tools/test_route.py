@@ -1187,3 +1187,18 @@ def test_a_flank_of_a_wide_body_reaches_a_road_beside_the_path_of_its_middle(tmp
     wide = mass._replace(depth=depth * mass.volume / (depth.sum() * 25))
     assert wide.volume ** (1 / 3) == pytest.approx(margin) and margin < 100 - 29 and not search.reaches(
         given, wide, road)["why_not"]
+
+
+def test_the_share_of_a_wide_body_is_that_of_the_flank_that_reaches_the_road_first(tmp_path):
+    """A road that runs down across the slope, 15 m below the left flank and 150 m below the middle."""
+    mass, given = hill(tmp_path / "slips" / "1")
+    x, y = run_helpers.centres(60, 40, 5.0)
+    depth = 1.5 * ((abs(x - 100) <= 80) & (abs(y - 180) <= 10))
+    wide = mass._replace(depth=depth * mass.volume / (depth.sum() * 25))
+    oblique = LineString([(185, 155), (95, 10)]).buffer(4)
+    below = LineString([(15, 155), (185, 155)]).buffer(4)
+    mobility = search.known.compute_known_mobility(wide, search.known.choice()).decides
+    middle = search.fall_path.at_road(mobility.path, oblique, wide.raster, mobility.width)
+    assert middle.met and mobility.exceedance(middle.length) < 0.5
+    flank, all_of_it = (search.reaches(dataclasses.replace(given, reach=0.5), wide, road) for road in (oblique, below))
+    assert flank["known_share"] == pytest.approx(all_of_it["known_share"], abs=0.05) and not flank["why_not"]
