@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import fiona
 import numpy as np
@@ -29,7 +30,7 @@ from slope_tools.errors import SlopeError
 from slope_tools.findings import Finding
 from slope_tools import disk, records
 from slope_tools.commands import route as route_command
-from slope_tools.route import choices, corridor, page as route_page, results, search, zones
+from slope_tools.route import choices, corridor, page as route_page, results, runs as route_runs, search, zones
 from slope_tools.route.yearly import Yearly
 from slope_tools.seismic import chain, fragility
 from slope_tools.seismic.fragility_files import Fragility
@@ -886,6 +887,19 @@ def test_a_lane_later_is_evaluated_without_new_runs(slope, capsys):
     site = yaml.safe_load(Path("R/bodies/1/site.yaml").read_text())
     assert site["road"]["lane"] == 4 and site["project"]["name"].startswith("Later, ")
     assert "its runs are evaluated" not in route_of(capsys)[1]
+    disk.write_file(Path("R/bodies/1/ensemble") / route_runs.EVALUATED, "of another version")
+    assert "its runs are evaluated" in route_of(capsys)[1]
+
+
+@pytest.mark.parametrize("tools, collected", [(None, False), ("of another version", False), ("of this one", True)])
+def test_what_another_version_evaluated_is_evaluated_again(two, monkeypatch, tools, collected):
+    monkeypatch.setattr(route_runs.kept, "tools", lambda: "of this one")
+    output = two[0] / "bodies/1/ensemble"
+    todo = [SimpleNamespace(folder=Path(f"run_{k}"), name=f"run_{k}", error=None) for k in range(4)]
+    asked = route_runs.Asked(SimpleNamespace(output=output, road=SimpleNamespace(about=dict)), None, None, todo)
+    if tools:
+        disk.write_file(output / route_runs.EVALUATED, tools)
+    assert route_runs.is_collected(asked, set()) == collected
 
 
 @pytest.mark.long

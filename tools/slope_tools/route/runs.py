@@ -8,7 +8,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Sequence
 
-from .. import disk, geometry
+from .. import disk, geometry, kept
 from ..case import decks
 from ..case.data_files import data_files
 from ..case.slip_deck import PREFIX
@@ -33,6 +33,7 @@ from .search import SLIPS
 
 SITES = "bodies"
 STUDY = site_study.ENSEMBLE
+EVALUATED = ".evaluated"      # which tools made the results of a body
 
 
 class Asked(NamedTuple):
@@ -128,14 +129,19 @@ def make_route_runs(several: Sequence[Asked], tell) -> List[str]:
         for k, asked in enumerate(several, 1):
             if not is_collected(asked, new):
                 results.collect_results(asked.setup, asked.questions, asked.todo, works[asked.setup.runs])
+                disk.write_file(asked.setup.output / EVALUATED, kept.tools())
                 tell(f"body {asked.setup.home.name}, {k} of {len(several)}: its runs are evaluated")
     return [f"body {one.setup.home.name}: {failure}" for one in several
             if (failure := study.failure(one.setup.output, one.todo))]
 
 
 def is_collected(asked: Asked, new) -> bool:
-    """Whether the results in a body's folder are of these runs, none of which was made since, and of this road."""
+    """Whether the results in a body's folder are of these runs, none of which was made since, of this road, and
+    made by these tools."""
     if any(run.folder in new or run.error for run in asked.todo):
+        return False
+    by = asked.setup.output / EVALUATED
+    if not by.is_file() or by.read_text(encoding="ascii") != kept.tools():
         return False
     try:
         written = load_study(asked.setup.output / "study.yaml")
