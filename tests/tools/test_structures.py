@@ -125,6 +125,15 @@ def test_of_runs_that_end_in_motion_a_force_is_a_least(moving):
         assert text == (cut if moving else whole)
 
 
+def test_page_1_names_the_structure_that_bears_most_per_metre_too():
+    """A pier of 1 m bears a fifth of what a wall does, on a tenth of the length."""
+    wall = {"mean_force_n": 4e6, "length_m": 20.0, "bearing_m": 10.0, "triangle_m": 0.5}
+    pier = {**wall, "mean_force_n": 8e5, "length_m": 1.0, "bearing_m": 1.0, "triangle_m": 0.1}
+    rows = [made_rows.row(structures={"wall": wall, "pier": pier}, ball_m3=1.0)]
+    (_, text), = client_part.structures(SimpleNamespace(finished=rows))
+    assert text == "4.00 MN, on wall, 400 kN per metre of the length that bears it; 800 kN per metre on pier"
+
+
 def test_a_single_run_is_reported_too(studied, capsys, blank_pictures):
     blank_pictures()
     status, _, err = slope(f"report {studied / 'wall_1'} -o {studied}/single.html", capsys)

@@ -91,10 +91,16 @@ def structures(data: Data) -> List[Tuple[str, str]]:
     in_motion = any(row.moving for row in data.finished)
     if not force > 0:
         return [("force on structures", "nothing touches them" + " before the runs end, in motion" * in_motion)]
-    most, least = max((each or 0.0, least) for _, other, (each, least) in forces if other == name)
+    lengthwise = [((each or 0.0, least), other) for _, other, (each, least) in forces]
     text = f"{'at least ' * in_motion}{digits.si(force, 'N')}, on {name}"
-    if most > 0:
-        text += f", {'at least ' * (least or in_motion)}{digits.si(most, 'N')} per metre of the length that bears it"
+
+    def load(most: float, least: bool) -> str:
+        return f"{'at least ' * (least or in_motion)}{digits.si(most, 'N')} per metre"
+    mine, (most, hardest) = max(each for each, other in lengthwise if other == name), max(lengthwise)
+    if mine[0] > 0:
+        text += f", {load(*mine)} of the length that bears it"
+    if most[0] > mine[0]:
+        text += f"; {load(*most)} on {hardest}"
     return [("largest force that lasts half a second", text)]
 
 
