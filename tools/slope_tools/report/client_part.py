@@ -83,7 +83,7 @@ def moving(data: Data, numbers: Numbers) -> List[Tuple[str, str]]:
 
 def structures(data: Data) -> List[Tuple[str, str]]:
     """The largest lasting force on a structure."""
-    forces = [(numbers["mean_force_n"], name, per_metre(numbers, row.ball_m3 ** (1 / 3)))
+    forces = [(numbers["mean_force_n"], name, per_metre(numbers, row.ball_m3 ** (1 / 3)) or 0.0)
               for row in data.finished for name, numbers in row.structures.items()]
     if not forces:
         return []
@@ -91,16 +91,13 @@ def structures(data: Data) -> List[Tuple[str, str]]:
     in_motion = any(row.moving for row in data.finished)
     if not force > 0:
         return [("force on structures", "nothing touches them" + " before the runs end, in motion" * in_motion)]
-    lengthwise = [((each or 0.0, least), other) for _, other, (each, least) in forces]
     text = f"{'at least ' * in_motion}{digits.si(force, 'N')}, on {name}"
-
-    def load(most: float, least: bool) -> str:
-        return f"{'at least ' * (least or in_motion)}{digits.si(most, 'N')} per metre"
-    mine, (most, hardest) = max(each for each, other in lengthwise if other == name), max(lengthwise)
-    if mine[0] > 0:
-        text += f", {load(*mine)} of the length that bears it"
-    if most[0] > mine[0]:
-        text += f"; {load(*most)} on {hardest}"
+    mine = max(each for _, other, each in forces if other == name)
+    most, hardest = max((each, other) for _, other, each in forces)
+    if mine > 0:
+        text += f", at least {digits.si(mine, 'N')} per metre of the length that bears it"
+    if most > mine:
+        text += f"; at least {digits.si(most, 'N')} per metre on {hardest}"
     return [("largest force that lasts half a second", text)]
 
 

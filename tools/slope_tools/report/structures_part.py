@@ -16,7 +16,7 @@ LENGTHWISE = "mean_force_n_m"       # the largest lasting force per metre of the
 COLUMNS = {
     "structures": (("largest force", "N", "largest_force_n"), ("at", "s", "at_s"),
                    (f"largest mean over {structures.WINDOW:g} s", "N", "mean_force_n"),
-                   ("the same per metre", "N/m", LENGTHWISE), ("at the end", "N", "end_force_n"),
+                   ("the same per metre, at least", "N/m", LENGTHWISE), ("at the end", "N", "end_force_n"),
                    ("on contacts", "", "end_contacts"),
                    ("impulse", "N s", "impulse_ns"), ("largest moment", "N m", "moment_nm"),
                    ("largest pressure", "Pa", "largest_pressure_pa")),
@@ -29,8 +29,8 @@ PREFIXED = ("N", "N/m", "N s", "N m", "Pa", "J")     # units that are written wi
 
 CAPTIONS = {
     "structures": "Loads on the structures. A mean over time is that of the mass, per metre of the length that bears "
-                  f"it ({100 * structures.BORNE:.0f} % of the impulse, evenly, {structures.FEW} balls at least; a "
-                  f"least where triangles longer than 1/{structures.PARTS} of it do not tell it: draw shorter); the "
+                  f"it ({100 * structures.BORNE:.0f} % of the impulse of the run, evenly, {structures.FEW} balls at "
+                  "least; what bears the largest force may be shorter than this, and than long triangles); the "
                   "largest force, moment and pressure come from single impacts of the model's balls. The force at the "
                   "end depends on how the mass came to rest: about 0.5 times the pressure of a fluid of the same "
                   "weight where it stood before most of its weight came or where the structure gives way, 0.7 to 0.9 "
@@ -99,11 +99,9 @@ class Structures:
              ball_of(self.data))]
         for number, label, found, ball in each:
             for name, numbers in found.items():
-                per_metre, least = (structures.per_metre(numbers, ball ** (1 / 3)) if what == "structures" else
-                                    (None, False))
-                numbers = {**numbers, LENGTHWISE: per_metre}
-                cells = ["at least " * (least and key == LENGTHWISE)
-                         + self.cell(f"{name}: {head}", unit, numbers.get(key), label)
+                if what == "structures":
+                    numbers = {**numbers, LENGTHWISE: structures.per_metre(numbers, ball ** (1 / 3))}
+                cells = [self.cell(f"{name}: {head}", unit, numbers.get(key), label)
                          for head, unit, key in COLUMNS[what]]
                 rows.append([*([number] if study else []), name, *cells])
         heads = [*(["run"] if study else []), what[:-1],

@@ -6,7 +6,7 @@ this one's. Forces in N, times in s, pressures in Pa, volumes in m3 of ground, e
 import csv
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 from xml.etree import ElementTree
 
 import numpy as np
@@ -22,7 +22,7 @@ WINDOW = 0.5            # s, of the mean force: single impacts are those of the 
 SHARES = (0.5, 0.9, 0.95, 0.99)
 FEW = 5                 # balls: on a shorter length, or a lower structure, loads are those of one ball after another
 BORNE = 0.9             # of the impulse: what comes onto either end of a structure is of stray balls
-PARTS = 10              # of a length, of which those that bear least do not count; and its triangles must be as short
+PARTS = 10              # of a length, of which those that bear least do not count
 SERIES = ("time", "fx", "fy", "fz", "jx", "jy", "jz", "contacts", "largest_force", "largest_moment")
 OLDER = ": of an older version? Then make the run again (a study with --anew)"
 FILES = {"structures": "structures.csv", "lines": "lines.csv"}
@@ -109,16 +109,9 @@ def crossings(folder: Path, prefix: str) -> Dict[str, np.ndarray]:
     return table_of(folder / f"{prefix}.line.csv", ("time", "direction", "speed", "height", "energy", "volume"))
 
 
-class Bearing(NamedTuple):
-    """m in plan: the width of a structure across its load; of its part that bears this; of its triangles, a mean by
-    load."""
-    length: float
-    part: float
-    triangle: float
-
-
-def bearing_length(corners: np.ndarray, impulse: np.ndarray) -> Bearing:
-    """Of triangles (n, 3, 3) with an impulse per area (n), even on each.
+def bearing_length(corners: np.ndarray, impulse: np.ndarray) -> Tuple[float, float]:
+    """m in plan: the width of a structure across its load, and that of the part that bears this; of triangles
+    (n, 3, 3) with an impulse per area (n), even on each.
 
     The part: as long as an even load is that has BORNE of it, in the middle, on the same length; and of that length
     the PARTS that bear BORNE again, as two streams load no wall between them.
@@ -129,7 +122,7 @@ def bearing_length(corners: np.ndarray, impulse: np.ndarray) -> Bearing:
     along = corners[..., :2] @ across_load(corners, normal / np.maximum(2 * area[:, None], 1e-30), load)
     length = float(np.ptp(along))
     if not (length > 0 and load.sum() > 0):
-        return Bearing(length, 0.0, 0.0)
+        return length, 0.0
     low, high = along.min(axis=1), along.max(axis=1) + 1e-6 * length    # upright across it: no length
     at, index = np.unique(np.concatenate([low, high]), return_inverse=True)
     rate = np.cumsum(np.bincount(index, np.concatenate([load / (high - low), -load / (high - low)])))[:-1]
@@ -137,8 +130,7 @@ def bearing_length(corners: np.ndarray, impulse: np.ndarray) -> Bearing:
     ends = np.interp(load.sum() * np.array([(1 - BORNE) / 2, (1 + BORNE) / 2]), before, at)
     parts = np.sort(np.diff(np.interp(np.linspace(ends[0], ends[1], PARTS + 1), at, before)))[::-1]
     most = np.interp(BORNE, np.concatenate([[0.0], np.cumsum(parts) / parts.sum()]), np.arange(PARTS + 1) / PARTS)
-    return Bearing(length, float(min(length, most * (ends[1] - ends[0]) / BORNE ** 2)),
-                   float(np.average(high - low, weights=load)))
+    return length, float(min(length, most * (ends[1] - ends[0]) / BORNE ** 2))
 
 
 def across_load(corners: np.ndarray, normal: np.ndarray, load: np.ndarray) -> np.ndarray:
@@ -161,8 +153,7 @@ def of_structure(folder: Path, prefix: str) -> Dict[str, Any]:
     time, mean = forces.mean_force()
     numbers: Dict[str, Any] = {"largest_force_n": 0.0, "at_s": None, "mean_force_n": 0.0, "mean_at_s": None,
                                "end_force_n": 0.0, "end_contacts": 0, "impulse_ns": 0.0, "moment_nm": 0.0,
-                               "length_m": None, "bearing_m": None, "triangle_m": None,
-                               "largest_pressure_pa": 0.0, "pressure_at": None}
+                               "length_m": None, "bearing_m": None, "largest_pressure_pa": 0.0, "pressure_at": None}
     if len(time) and forces.largest.max() > 0:
         numbers.update(largest_force_n=float(forces.largest.max()), at_s=float(time[forces.largest.argmax()]),
                        mean_force_n=float(mean.max()), mean_at_s=float(time[mean.argmax()]),
@@ -172,21 +163,18 @@ def of_structure(folder: Path, prefix: str) -> Dict[str, Any]:
     largest = pressure["largest_pressure"]
     if len(largest) and largest.max() > 0:
         k = int(largest.argmax())
-        bearing = bearing_length(*polydata(folder / f"{prefix}.vtp", "impulse"))
-        numbers.update(length_m=bearing.length, bearing_m=bearing.part, triangle_m=bearing.triangle,
-                       largest_pressure_pa=float(largest[k]), pressure_at=[float(pressure[axis][k]) for axis in "xyz"])
+        length, bearing = bearing_length(*polydata(folder / f"{prefix}.vtp", "impulse"))
+        numbers.update(length_m=length, bearing_m=bearing, largest_pressure_pa=float(largest[k]),
+                       pressure_at=[float(pressure[axis][k]) for axis in "xyz"])
     return numbers
 
 
-def per_metre(numbers: Mapping[str, Any], ball: float) -> Tuple[Optional[float], bool]:
+def per_metre(numbers: Mapping[str, Any], ball: float) -> Optional[float]:
     """N/m: the largest lasting force of a structure over the length that bears it, FEW balls (m) at least, if it is as
-    long, and whether that is a least, as its triangles are too long to say which; None where nothing touched it."""
+    long; None where nothing touched it. A least: what bears the largest force may be shorter than what bears the
+    impulse of the whole run, and than long triangles."""
     length = numbers.get("length_m")
-    if not length:
-        return None, False
-    bearing, few = numbers["bearing_m"], min(FEW * ball, length)
-    return (numbers["mean_force_n"] / max(bearing, few),
-            bearing > few and (numbers.get("triangle_m") or 0.0) > bearing / PARTS)
+    return numbers["mean_force_n"] / max(numbers["bearing_m"], min(FEW * ball, length)) if length else None
 
 
 def of_line(folder: Path, prefix: str) -> Dict[str, Any]:
