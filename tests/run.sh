@@ -9,7 +9,7 @@
 #
 # The short run and --all keep the times of all tests in build/times.csv. --times also writes those of files into
 # tests/times.csv, which says which files begin first: after the short run.
-# JOBS=<n> in the environment: number of compilers, and of tests in C++, at a time (default 2). One more of those in Python, as
+# JOBS=<n> in the environment: number of compilers, and of tests in C++, at a time (default 2). Two more of those in Python, as
 # they wait for what they start.
 set -euo pipefail
 export LC_ALL=C
@@ -72,7 +72,7 @@ ctest --test-dir "$top/build" -j "$jobs" --output-on-failure "${units[@]}" >"$wo
 grep -v " Passed " "$work/ctest.log" | sed '/^ *Start /d' || true
 wait || true
 if ((${#files[@]})); then
-  sh "$top/build/tests/pytest.sh" -n "$((jobs + 1))" --dist loadfile --basetemp "$work/pytest" "${mark[@]}" "${files[@]}" |
+  sh "$top/build/tests/pytest.sh" -n "$((jobs + 2))" --dist loadfile --basetemp "$work/pytest" "${mark[@]}" "${files[@]}" |
     tee "$work/pytest.log" || failed=1
 fi
 if ((counted)); then
