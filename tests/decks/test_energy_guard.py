@@ -9,6 +9,8 @@ atom_style   sphere
 boundary     f f f
 comm_modify  vel yes
 variable     mass equal 2500*PI*0.02^3/6
+neighbor     0.005 bin
+neigh_modify every 1 delay 0 check yes
 """
 
 # a ball of 2 cm grazes a frozen one of its size without friction: the springs of its contact slide at all times
@@ -23,8 +25,6 @@ group        held type 2
 pair_style   gran/restitution
 pair_coeff   * * stiffness 1e6 1e6 restitution {e} friction 0
 timestep     $({part}*0.25*sqrt(v_mass/1e6))
-neighbor     0.005 bin
-neigh_modify every 1 delay 0 check yes
 velocity     all set 0 0 0
 velocity     ball set 3 0 -1
 fix          hold held freeze
@@ -49,7 +49,6 @@ pair_style   gran/restitution
 pair_coeff   * * stiffness 1e5 1e5 restitution {e} friction 5
 timestep     $({part}*0.25*sqrt(v_mass/1e5))
 neighbor     0.01 bin
-neigh_modify every 1 delay 0 check yes
 velocity     all set 0 0 0
 velocity     ball set 2 0 0
 fix          weight ball gravity 9.81 vector 0 0 -1
@@ -74,8 +73,6 @@ group        held type 2
 pair_style   gran/restitution scheme plain
 pair_coeff   * * stiffness 1e6 1e6 damping $(138*sqrt(1e6*v_mass)) 0
 timestep     $(0.25*sqrt(v_mass/1e6))
-neighbor     0.005 bin
-neigh_modify every 1 delay 0 check yes
 velocity     all set 0 0 0
 fix          weight ball gravity 9.81 vector 0 0 -1
 fix          hold held freeze
@@ -95,8 +92,6 @@ set          type 1 diameter 0.02 density 2500
 pair_style   gran/restitution
 pair_coeff   * * stiffness 1e6 1e6 restitution 1 friction 0
 timestep     ${dt}
-neighbor     0.005 bin
-neigh_modify every 1 delay 0 check yes
 velocity     all set 0 0 0
 group        first id 1
 group        second id 2

@@ -203,7 +203,6 @@ def test_bad_input_is_one_line(bad, capsys):
             (f"{STUDY} --vary body=list:1,2", "--vary: must not have body"),
             ("mine/in.site --sample 8 --vary rolling=0:0.1 -o out --fragility fragility",
              "--fragility: must be given with the folder of a site"),
-            ("mine --sample 8 --more-than 5", "--more-than: must not be given with --sample"),
             ("mine --sample 8 --fragility nowhere", "nowhere/fragility.yaml"),
             ("mine --sample 3 --fragility fragility", "--sample: must be more runs than there are parameters"),
             ("one --sample 8 --fragility fragility", "body 2 may fail, too"),

@@ -278,7 +278,6 @@ def test_an_ensemble_is_weighted(slope, succeed, capsys, monkeypatch):
     ("--sample 8 --vary friction=1:2 --mobility small.csv --except x", "--except: must be an event of small.csv"),
     ("--sample 8 --vary friction=1:2 --except x", "--except: must be given with --known"),
     ("--sample 8 --vary friction=1:2 --confined", "--confined or --unconfined: must be given with --known"),
-    ("--set friction=1 --mobility small.csv", "--known: must be given with --sample only, got small.csv"),
     ("--sample 8 --vary friction=1:2 --mobility three.csv", "three.csv: must have at least 12 events"),
 ])
 def test_wrong_conditions_are_one_line(slope, arguments, message):

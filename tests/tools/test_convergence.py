@@ -140,7 +140,6 @@ def test_a_failed_size_is_told_and_the_others_are_compared(slope):
 
 @pytest.mark.parametrize("arguments, message", [
     ("--converge d=1", "--converge: must give two values at least"),
-    ("--converge d=1,0", "--converge: d must stay within the deck's range, > 0, got d=1,0"),
     ("--converge steps=1,0", "--converge: must give numbers > 0 for steps, got 0"),
     ("--converge terrain=a.asc,b.asc", "--converge: must give numbers > 0 for terrain"),
     ("--converge colour=1,2", "--converge: must name an index variable of case/in.tiny"),

@@ -437,10 +437,8 @@ def test_a_latin_hypercube_does_not_grow(slope):
     ("--vary friction=10:40", "--sample: must be given with --vary: how many runs"),
     ("--sample 8 --vary friction=40:10", "--vary: friction must have its lower bound first, LO < HI, got "
      "friction=40:10"),
-    ("--sample 8 --vary friction=normal:30:5:40:20", "--vary: friction must have its lower bound first"),
     ("--sample 8 --vary friction=30:95", "--vary: friction must stay within the deck's range, >= 0 and < 90, got "
      "friction=30:95"),
-    ("--sample 8 --vary rolling=-0.1:0.1", "--vary: rolling must stay within the deck's range, >= 0, got "),
     ("--sample 8 --vary friction=list:20,90", "--vary: friction must stay within the deck's range"),
     ("--sample 2 --vary friction=10:40 --vary rolling=0:0.1", "--sample: must be more runs than there are parameters, "
      "2, got 2"),
@@ -473,9 +471,6 @@ def test_a_latin_hypercube_does_not_grow(slope):
      "friction"),
     ("--sample 8 --vary friction=1:2 --more-than 5,10", "--more-than: must not be given with --sample, got 5,10"),
     ("--set friction=20 --of front_m", "--of: must be given with --sample only, got front_m"),
-    ("--set friction=20 --exceed-speed 5", "--exceed-speed: must be given with --sample only, got 5"),
-    ("--set friction=20 --exceed-energy 10", "--exceed-energy: must be given with --sample only, got 10"),
-    ("--set friction=20 --design sobol", "--design: must be given with --sample only, got sobol"),
     ("--set friction=20 --seed 0", "--seed: must be given with --sample only, got 0"),
 ])
 def test_wrong_ensembles_are_one_line(slope, arguments, message):

@@ -218,7 +218,6 @@ def test_a_run_of_the_deck(slope, here):
 
 
 @pytest.mark.parametrize("arguments, message", [
-    ("", "the following arguments are required: PREFIX"),
     ("none", "none.thickness.asc: must be an existing file"),
     (".", ".: must hold one run, or name one of them by its prefix, got broken, finer, run"),
     ("empty", "empty: must be output of fix deposit/grid: its prefix, one of its files, or the folder of a run, a "

@@ -445,8 +445,6 @@ HEAD = "name,fall_m,length_m,volume_Mm3,confinement\n"
 
 @pytest.mark.parametrize("text, more, words", [
     (HEAD + "".join(f"{name},900,2000,1,lateral\n" for name in "ABC"), "", ("at least 12", "got 3")),
-    (HEAD + "A,900,890,1,lateral\n", "", ("line 2", "metres", "890 and 900")),
-    ("name,fall_m,length_m\n", "", ("volume_Mm3", "confinement")),
     (None, "--except Nowhere", ("--except", "Nowhere")),
     (None, "--path road.wkt", ("road.wkt",)),
     (None, "--road none.wkt", ("none.wkt", "existing")),

@@ -159,7 +159,7 @@ def test_a_request_is_not_written_to():
 
 
 @pytest.mark.parametrize("words, rule", [
-    ("in.x", "required: --mesh"), ("in.x --mesh five", "finite number"), ("in.x --mesh 5 --run 0", "whole number >= 1"),
+    ("in.x", "required: --mesh"), ("in.x --mesh 1_5", "finite number"), ("in.x --mesh 5 --run 0", "whole number >= 1"),
     ("in.x --mesh 5 --local --file f", "not allowed with"), ("in.x --mesh 5 --site mine", "unrecognized"),
     ("in.x --mesh 5 --sure perhaps", "invalid choice")])
 def test_what_a_field_does_not_take(words, rule, capsys):

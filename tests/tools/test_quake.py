@@ -121,7 +121,6 @@ def test_kiknet_surface_and_borehole(slope):
     (lambda text: text.replace("100Hz", "fast"), "must have a line Sampling Freq(Hz) such as 100Hz, got 'fast'"),
     (lambda text: text.replace("E-W", "E"), "the head must have a line Dir. with N-S, E-W, U-D or 1 to 6, got 'E'"),
     (lambda text: text[:2000] + "x" + text[2001:], "must hold numbers only"),
-    (lambda text: "\n".join(text.splitlines()[:12]), "the head must have a line Scale Factor"),
     (lambda text: "", "a.EW: must hold a record, it is empty"),
 ])
 def test_a_knet_file_that_is_wrong(slope, change, message):
@@ -182,7 +181,6 @@ def test_at2_turned(slope):
 @pytest.mark.parametrize("change, parts", [
     (lambda text: text[:-100], ["must hold the 2000 values that its head promises, it is cut short"]),
     (lambda text: text.replace("UNITS OF G", "UNITS OF FURLONGS"), ["a.AT2, line 3: must end in UNITS OF G"]),
-    (lambda text: text.replace("UNITS OF G", "UNITS OF M/S2").replace("E", "E+03"), []),
     (lambda text: text.replace("NPTS=", "POINTS="), ["a.AT2, line 4: must be NPTS= n, DT= s SEC"]),
     (lambda text: text.replace("DT= 0.01", "DT= 0.00.01"), ["a.AT2, line 4: must be NPTS= n, DT= s SEC"]),
     (lambda text: text.replace(", 090", ", somewhere"), ["a.AT2, line 2: must end in the direction, an azimuth or UP"]),
@@ -561,7 +559,6 @@ LINES = ["0,1", "0.01,2", "0.02,1", "0.03,0", "0.04,1"]
     ("time,EW (gal)", LINES[:3] + ["0.03,nan"], "a.csv, line 5: must be 2 numbers, got '0.03,nan'"),
     ("time,EW (gal)", LINES[:3] + ["0.03,"], "a.csv, line 5: must be 2 numbers, got '0.03,'"),
     ("time,EW", LINES, "a.csv, line 1: column ew needs a unit, gal, g or m/s2, in brackets or by --unit, got none"),
-    ("time,EW (mm)", LINES, "line 1: column ew needs a unit, gal, g or m/s2, in brackets or by --unit, got 'mm'"),
     ("time,size (gal)", LINES, "a.csv, line 1: columns must be time and EW, NS or UD, got 'size'"),
     ("0,1", LINES, "a.csv, line 1: the first line must name the columns, such as time,EW (gal),NS (gal), got '0,1'"),
     ("time,EW (gal)", LINES[:1], "a.csv: must hold at least two lines of values, got 1"),
@@ -643,7 +640,6 @@ def test_window(slope):
     ("--scale 0", "--scale: must not be 0, got 0"),
     ("--peak 6000", "--peak: must give a largest acceleration of at most 5000 gal"),
     ("--scale 100", "--scale: must give a largest acceleration of at most 5000 gal"),
-    ("--peak x", "must be a finite number, got 'x'"),
     ("--azimuth 400", "--azimuth: must be a compass bearing, 0 to 360 degrees, got 400"),
     ("--azimuth=-1", "--azimuth: must be a compass bearing, 0 to 360 degrees, got -1"),
     ("--unit g", "--unit: must be given for a CSV that names no unit")])

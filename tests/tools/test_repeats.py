@@ -122,8 +122,6 @@ def test_without_a_road_there_are_means_and_no_headline(succeed):
     ("--set rolling=0 --repeat seed=0 --repeat xoffset=0", "--repeat: must give a value that the first run does not "
      "have, got seed=0, xoffset=0"),
     ("--set seed=5 --repeat seed=5.0", "--repeat: must give a value that the first run does not have, got seed=5.0"),
-    ("--set rolling=0 --repeat seed=1,1", "--repeat: must have every value once"),
-    ("--set rolling=0 --repeat seed", "--repeat: must be NAME=V1,V2,... or NAME=A:B:STEP, got seed"),
     ("--set rolling=0:1:0.001 --repeat seed=1:10:1", "--set: must make at most 10000 runs, got 11011"),
 ])
 def test_wrong_repeats_are_one_line(slope, arguments, message):
@@ -344,9 +342,8 @@ TRAVEL = {"front": 1.0, "front_at_release": 1.0, "centroid": 1.0, "reach_angle":
     ("travel", {**TRAVEL, "quantiles": 5}, "quantiles: must be a list in brackets or null, such as .5., got 5"),
     ("travel", {**TRAVEL, "quantiles": [5]}, "quantiles: first value: must be a section with keys, got 5"),
     ("travel", {**TRAVEL, "quantiles": [{"share": 0.5}]}, "must have distance and reach_angle"),
-    ("travel", {**TRAVEL, "quantiles": [{"share": 0.5, "distance": "x", "reach_angle": 1}]},
-     "quantiles: first value: distance: must be a finite number or null, got 'x'"),
-    ("travel", {**TRAVEL, "quantiles": [{"share": 0.5, "distance": float("nan"), "reach_angle": 1}]}, "got nan"),
+    ("travel", {**TRAVEL, "quantiles": [{"share": 0.5, "distance": float("nan"), "reach_angle": 1}]},
+     "quantiles: first value: distance: must be a finite number or null, got nan"),
     ("motion", {"moving_share": 0.0, "threshold": 0.1, "fast_share": 0.1}, "must be valid: 'fast_volume' is a dep"),
     ("motion", {"moving_share": 0.0, "threshold": 0.1, **fast(0.0), "rest_share": "x"},
      "rest_share: must be a finite number, got"),

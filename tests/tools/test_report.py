@@ -886,7 +886,6 @@ BAD = {     # what else a file may have: test_schemas.py
     "broken study": (text_of("out/study.yaml", "runs: ["), "out", "out/study.yaml: must be what `slope study` wrote"),
     "only failed runs": (only_failed, "out", "out/study.yaml: must have a finished run, got 1 that failed"),
     "a run is gone": (lambda: shutil.rmtree(RUN), "out", f"{RUN}/tiny.summary.yaml: must be a summary"),
-    "a raster of a run": (without(f"{RUN}/tiny.surface.asc"), "out", f"{RUN}/tiny.surface.asc: must be"),
     "the envelope": (without("out/envelope_max_thickness.asc"), "out", "out/envelope_max_thickness.asc: must be"),
     "an exceedance": (without("out/exceedance_0.5m.asc"), "out", "out/exceedance_0.5m.asc: must be an existing file"),
     "the volume": (without(f"{RUN}/volume/volume_mesh.tif"), f"out --run {Path(RUN).name}",
@@ -911,7 +910,6 @@ BAD = {     # what else a file may have: test_schemas.py
                                    "out --reference r.yaml", f"{REFERENCES}: quantities: front_m: must have "
                                    "levels: {NAME: VALUE}, or variable and series: {NAME: {X: VALUE}}, or both"),
     "no convergence": (lambda: None, "out --converge none", "--converge: must be a converge.yaml of `slope "),
-    "section elsewhere": (lambda: None, "one --section 100 4 120 4", "--section: must cross the grid of the run, 0 0 "),
     "section of nan": (lambda: None, "one --section 1 2 3 nan", "--section: must be X1 Y1 X2 Y2 (finite numbers, "),
     "run of a single run": (lambda: None, "one --run a", "--run: needs a study, with study.yaml, in one, got a"),
 }

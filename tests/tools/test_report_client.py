@@ -209,19 +209,6 @@ def test_the_number_says_that_it_is_in_a_gap(gap, source, said):
     assert ("between 2,000 and 9,000 m3" in text) == said and ("no run ends" in text) == said
 
 
-def test_an_ensemble_that_known_events_weigh_is_not_counted_alike():
-    """Page 1 of a site without a road: what most runs stay within is not what most known events do; and a length of the
-    runs with chosen settings is theirs."""
-    alike = made_study.ensemble(finished=20, of="front_m", quantities={"front_m": {
-        "name": "farthest ball", "unit": "m", "quantiles": [{"share": 0.9, "value": 50.0}]}})
-    known = replace(alike, known_events=weighted().study.ensemble.known_events)
-    reach = how_far.pool([60.0, 70.0], None, "paper")
-    for of, said in ((alike, "Distance of the farthest ball: 90 % of the 20 runs with drawn settings"), (known, "")):
-        found = letter.write_letter(letter.make_letter(made_study.study(runs=[row()], ensemble=of, reach=reach)))
-        assert found.clear.startswith(said) and bool(found.clear) == bool(said)
-        assert "By 2 runs with chosen settings" in found.far
-
-
 @pytest.mark.parametrize("warnings", [[], [{"kind": "road on body", "numbers": {"file": "a", "part": "", "Part": ""}}]])
 def test_a_road_that_goes_with_the_mass_is_in_the_letter(warnings):
     text = letter.write_letter(letter.make_letter(made_study.study(runs=[row()], warnings=warnings))).lacks
@@ -229,16 +216,18 @@ def test_a_road_that_goes_with_the_mass_is_in_the_letter(warnings):
 
 
 def test_what_known_events_weigh_is_not_said_of_drawn_settings():
-    """Without a road the letter says how far, by these events, and not what most of the runs stay within."""
+    """Without a road the letter says how far, by these events, and not what most of the runs stay within; and a length
+    of the runs with chosen settings is theirs."""
     quantities = {"length_m": {"name": "length", "unit": "m", "mean": 90.0, "standard_deviation": 1.0, "smallest": 80.0,
                                "largest": 99.0, "quantiles": [
                                    {"share": 0.9, "value": 95.0, "low": None, "high": 99.0}]}}
     for reached in (0.95, None):
-        about = made_study.study(runs=[row()], ensemble=made_study.ensemble(
-            {"reached": reached}, of="length_m", quantities=quantities))
-        text = letter.write_letter(letter.make_letter(about)).clear
-        assert text == ("" if reached else "Length: 90 % of the 64 runs with drawn settings stay within 95.0 m, with "
-                        "90 % confidence at most 99.0 m."), text
+        about = made_study.study(runs=[row()], reach=how_far.pool([60.0, 70.0], None, "paper"), ensemble=(
+            made_study.ensemble({"reached": reached}, of="length_m", quantities=quantities)))
+        found = letter.write_letter(letter.make_letter(about))
+        assert found.clear == ("" if reached else "Length: 90 % of the 64 runs with drawn settings stay within 95.0 m, "
+                               "with 90 % confidence at most 99.0 m."), found.clear
+        assert "By 2 runs with chosen settings" in found.far
 
 
 def test_the_next_step_and_its_time(tmp_path):

@@ -647,10 +647,9 @@ def given_bodies(**more):
 
 @pytest.mark.parametrize("about, got", [
     ({"depth": "6,0"}, "depth must be a number of m > 0, with a decimal point and without a unit, got 6,0"),
-    ({"depth": "6 m"}, "got 6 m"), ({"depth": "six"}, "got six"), ({"depth": "nan"}, "got nan"),
-    ({"depth": -3.0}, "got -3"),
+    ({"depth": "6 m"}, "got 6 m"), ({"depth": "nan"}, "got nan"), ({"depth": -3.0}, "got -3"),
     ({"depth": 0}, "got 0"), ({"depth": "inf"}, "got inf"), ({"depth": True}, "got True"), ({"depth": [5]}, "depth"),
-    ({"volume": "1.200,5"}, "volume must be a number of m3 > 0"), ({"depth": "2026-11-27"}, "got 2026-11-27"),
+    ({"volume": "1.200,5"}, "volume must be a number of m3 > 0"),
     ({"depth": 3.0, "volume": 900.0}, "must have one attribute, depth or thickness (m), or volume (m3)"),
     ({"depth": None}, "must have one attribute, depth or thickness (m), or volume (m3)"),
     ({"Depth": "six"}, "got six"), ({"thickness": "1.5 m"}, "thickness must be a number of m > 0"),

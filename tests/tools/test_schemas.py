@@ -60,7 +60,6 @@ FILES = {       # file: (its reader, a text, what must be said)
     "terrain.yaml": (lambda folder: rasters.read_sidecar(folder / "terrain.asc"), (
         ("{", "must be a sidecar that `slope terrain` wrote"),
         (SIDECAR % "high", "extent: yhi: must be a finite number, got 'high'"),
-        (SIDECAR % ".inf", "extent: yhi: must be a finite number, got inf"),
         ((SIDECAR % "3").replace("rows: 3", "rows: 0"), "size: rows: must be >= 1, got 0"),
         ((SIDECAR % "3").replace("null", "{wkt: nowhere}"), "must be a sidecar that `slope terrain` wrote (The WKT"))),
     "fragility.yaml": (fragility_files.read_fragility, (
@@ -100,7 +99,6 @@ FILES = {       # file: (its reader, a text, what must be said)
         ("study: {variable: d}", f"must be {convergence_part.WHAT}: must have quantities"),
         ("{study: {variable: d, deck: a, finished: 1}, quantities: {}}", "quantities: must not be empty"))),
     "r.yaml": (lambda folder: reference.read_reference(folder / "r.yaml", {"a": "it"}), (
-        ("{title: T, quantities: {a: {levels: {b: 1}, 7: 1}}}", "must have no 7, which is unknown"),
         ("{title: T, quantities: {a: {levels: {b: 1}, 7: 1, more: 1}}}", "must have no 7, more, which is unknown"),
         ("{title: T, quantities: {a: {variable: v, series: {-9: 1}}}}", "series: -9: must be a section with keys"),
         ("{title: T, quantities: {7: {levels: {b: 1}}}}", "must be columns that all runs have, a, got 7"),

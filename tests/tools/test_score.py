@@ -257,7 +257,6 @@ def test_files_and_warnings(slope):
 @pytest.mark.parametrize("arguments, message", [
     ("run --observed mapped.tif --threshold -1", "--threshold: must be >= 0, got -1"),
     ("run --observed mapped.tif --mesh 0", "--mesh: must be > 0, got 0"),
-    ("run", "the following arguments are required: --observed"),
     ("none --observed mapped.tif", "none.thickness.asc: must be an existing file"),
     ("run --observed none.tif", "none.tif: must be an existing file"),
     ("run --observed away.tif", "away.tif: must overlap the grid of the run, 0 0 150 100 (local metres), got 500 0"),

@@ -311,10 +311,6 @@ def test_the_map_has_the_fall_path(inside, mine, monkeypatch):
     assert not len(site_map.reach_of(seen[0]._replace(depth=0 * seen[0].depth)).path)
 
 
-def test_a_large_body_needs_a_past_event():
-    assert site_warnings.of_thickness(3.1, 10.0) == []
-
-
 def test_a_study_says_how_thick_the_body_is_in_the_balls_that_it_ran():
     """Not in those that were planned, with which there was no such finding, or another."""
     others = [Finding("first look", {"balls": 8.0, "limit": 10.0}), Finding("few across")]
@@ -326,6 +322,7 @@ def test_a_study_says_how_thick_the_body_is_in_the_balls_that_it_ran():
     assert site_warnings.of_volume(9.9e5) == []
     line = str(*site_warnings.of_volume(3.6e7))
     assert "36 million m3" in line and "farther" in line and "slope calibrate" in line
+    assert site_warnings.of_thickness(3.1, 10.0) == []
 
 
 def test_the_ground_is_scattered_balls_as_large_as_those_of_the_soil(inside, mine):
@@ -345,16 +342,6 @@ def test_a_key_of_an_older_version_is_refused_with_what_to_do(inside, mine, sect
     err = inside("mine", 2).err
     assert err.count("\n") == 1 and re.search(f"mine/site.yaml: {section}: .*no {key}.*the site anew", err)
     assert contents(mine) == was != before
-
-
-@pytest.mark.parametrize("model, rule", [
-    ({"spacing": -1}, "model.spacing: must be > 0, got -1"),
-    ({"spacing": "x"}, "model.spacing: must be a finite number"),
-    ({"spacing": 1}, "model.spacing: must be <= 0.95, got 1")])
-def test_a_wrong_spacing_in_the_file(mine, model, rule):
-    edit(mine, "model", **model)
-    with pytest.raises(SlopeError, match=re.escape(f"site.yaml: {rule}")):
-        site_choices.load_site(mine)
 
 
 def test_a_set_of_known_events_is_checked_before_it_is_kept(inside, mine):

@@ -186,8 +186,6 @@ def test_doubts_of_places():
 @pytest.mark.parametrize("words, rule", [
     ("--cohesion -3", "Find_slip strength C must be >= 0 (Pa), got -3"),
     ("--friction 95", "Find_slip strength PHI must be 0 to below 90"),
-    ("--volume 1e7 1e8", "Find_slip limits must leave a sphere inside the terrain"),
-    ("--water 1.5", "Find_slip water ru R must be 0 to below 1, got 1.5"),
     ("--water-table high.asc", "water table"),
     ("--bedrock none.asc", "none.asc: must be an existing file"),
     ("--layer none.asc 1 2 3", "none.asc: must be an existing file"),

@@ -634,7 +634,6 @@ BAD = {
                      "--set: must name an index variable of case/in.tiny (none), got rolling of style string"),
     "no equals": (nothing, "case/in.tiny --set rolling -o out", "--set: must be NAME=V1,V2,... or NAME=A:B:STEP"),
     "no value": (nothing, "case/in.tiny --set rolling=0,,1 -o out", "--set: must have no empty value"),
-    "empty": (nothing, "case/in.tiny --set rolling= -o out", "--set: must have no empty value"),
     "twice": (nothing, "case/in.tiny --set rolling=0 --set rolling=1 -o out", "--set: must name a variable once"),
     "value twice": (nothing, "case/in.tiny --set rolling=0.1,0.10 -o out",
                     "--set: must have every value once, got rolling=0.1,0.10 with 0.10 twice"),

@@ -333,18 +333,6 @@ def test_missing_crs(slope, here):
     status, _, err = slope("dem.asc -o out.asc")
     assert status == 0 and err.startswith("slope terrain: note: dem.asc has no CRS") and err.count("\n") == 1
     assert yaml.safe_load((here / "out.yaml").read_text())["crs"] is None
-    before = (here / "out.asc").read_bytes()
-    status, out, err = slope(f"dem.asc -o out.asc --crs {CRS_M}")
-    assert (status, err) == (0, "") and "taken as EPSG:6677" in out
-    assert yaml.safe_load((here / "out.yaml").read_text())["crs"]["epsg"] == 6677
-    assert (here / "out.asc").read_bytes() == before
-
-
-def test_a_stretched_crs_is_warned_of(slope):
-    write_tif("dem.tif", *degrees_survey(), crs="EPSG:6668")
-    status, _, err = slope("dem.tif -o out.asc --crs EPSG:3857")
-    scale = float(re.search(r"a metre in EPSG:3857 is ([\d.]+) m on the ground", err).group(1))
-    assert status == 0 and scale == pytest.approx(np.cos(np.radians(36.3)), abs=0.005)
 
 
 # --- values ---
@@ -372,7 +360,7 @@ def test_a_crs_in_feet_with_the_unit_of_its_heights(written):
         assert np.nanmax(found) == pytest.approx(z.max() * factor, abs=4), name
 
 
-def test_pits_and_a_ground_in_feet_are_said(slope, written):
+def test_pits_are_said_with_the_size_of_the_largest(slope, written):
     z, transform = survey()
     z[5, 5] = z[8, 3:5] = 0.0
     write_tif("pits.tif", z, transform)
@@ -381,9 +369,6 @@ def test_pits_and_a_ground_in_feet_are_said(slope, written):
     found = written("pits.tif --nodata 0 --fill 2")
     assert_plane(*found[:3])
     assert np.isfinite(found[0]).all() and slope("pits.tif --nodata 0 -o out.asc")[2] == ""
-    write_tif("steep.tif", 3.28084 * survey()[0], transform)
-    _, _, err = slope("steep.tif -o steep.asc")
-    assert "the ground falls by " in err and "are the heights in feet? Then --z-unit ft, which makes it 37" in err
 
 
 F32 = float(np.finfo("float32").min)
@@ -629,9 +614,7 @@ BAD_GRIDS = [       # a text of bad.asc, what replaces it, and what is said of i
     ("3.0", "3.0 3.5", "values: must be 2 rows of 3, 6 values, got 7, first at line 7, which has 4"),
     ("6.0\n", "6.0\n7 8 9\n", "values: must be 2 rows of 3, 6 values, got 9, in 3 rows"),
     ("3.0\n4.0", "3.0 4.0\n", "values: must be 2 rows of 3, 6 values, got 6, first at line 7, which has 4"),
-    ("5.0", "5.0m", "line 8: must hold numbers with a decimal point, got '5.0m'"),
     ("xllcorner 0.0", "xllcorner west", "line 3: must be a name and a number, got xllcorner west"),
-    ("xllcorner", "xllcenter", "header: must have xllcorner and yllcorner, or xllcenter and yllcenter"),
     ("cellsize 2.0", "cellsize 0", "header: cellsize: must be > 0, got 0"),
     ("cellsize 2.0", "cellsize 2.0\ncellsize 4.0", "line 6: header key cellsize is given twice"),
     ("yllcorner", "xllcenter 1.0\nyllcorner", "line 4: xllcorner and xllcenter are both given"),
@@ -639,15 +622,9 @@ BAD_GRIDS = [       # a text of bad.asc, what replaces it, and what is said of i
     ("cellsize 2.0", "cellsize 2_0", "line 5: must be a name and a number, got cellsize 2_0")]
 BAD_OPTIONS = [
     ("--z-unit metres", "argument --z-unit: invalid choice: 'metres'"),
-    (f"--assign-crs EPSG:4326 --crs {CRS_M}", "ok.tif: coordinates in EPSG:4326 must be longitude and latitude"),
-    ("--assign-crs EPSG:999999", "--assign-crs: must be a CRS such as EPSG:6677, got EPSG:999999"),
     ("--crs EPSG:6668", "--crs: CRS must be in metres"), ("--crs EPSG:4978", "--crs: CRS must be in metres"),
     (f"--bounds {EAST + 1} {NORTH + 1} {EAST + 2} {NORTH + 2}", "output: must have at least 2 x 2 cells, got 1 x 1"),
-    ("--bounds 1 2 3 x", "argument --bounds: must be a finite number, got 'x'"),
-    ("--cell -2", "--cell: must be > 0, got -2"),
-    ("--cell nan", "argument --cell: must be a finite number, got 'nan'"),
     ("--cell 0.04", "--cell: must be at least 1/100 of the input's, 5 m, got 0.04"),
-    ("--cell 1e9", "output: must have at least 2 x 2 cells, got 1 x 1"),
     ("--origin 5", "--origin: must be auto or two numbers, E N, got 5"), ("--fill -1", "--fill: must be >= 0, got -1")]
 
 
@@ -674,8 +651,6 @@ BAD = [     # what is written, arguments, message
     (bad_tif(dtype="complex64"), "bad.tif -o out.asc", "bad.tif: must hold real numbers, got complex64"),
     (bad_tif(transform=Affine(5, 0, 1e9, 0, -5, 1e9)), "bad.tif -o out.asc --crs EPSG:32654",
      "--crs: must cover the input, whose coordinates are in EPSG:6677 (--assign-crs EPSG:n"),
-    (bad_tif(transform=Affine(1e-4, 0, 139, 0, -1e-4, 36)), "bad.tif -o out.asc --assign-crs EPSG:6668",
-     "bad.tif: CRS must be in metres"),
     (bad_tif(crs="EPSG:6676"), "ok.tif bad.tif -o out.asc",
      "bad.tif: CRS: must be that of ok.tif, EPSG:6677, got EPSG:6676"),
     (text(GRID), "ok.tif bad.asc -o out.asc", "bad.asc: CRS: must be that of ok.tif, EPSG:6677, got none"),
@@ -688,7 +663,6 @@ BAD = [     # what is written, arguments, message
      "--bounds: must hold a height, all cells are NODATA"),
     (None, "ok.tif -o out.tif", "-o: must be a file that ends in .asc, got out.tif"),
     (lambda: Path("x.asc").mkdir(), "ok.tif -o x.asc", "-o: must be a file that ends in"),
-    (None, "ok.tif", "the following arguments are required: -o"),
     (lambda: (text(GRID)(), text("size: 3\n", "bad.yaml")()), "bad.asc -o out.asc",
      "bad.yaml: must be a sidecar that `slope terrain` wrote")]
 

@@ -274,7 +274,6 @@ def test_one_place_for_all_balls(slope):
 
 
 @pytest.mark.parametrize("arguments, message", [
-    ("", "the following arguments are required: DUMP"),
     ("good.dump --axis z", "argument --axis: must be x, y or degrees, got 'z'"),
     ("good.dump --axis nan", "argument --axis: must be x, y or degrees, got 'nan'"),
     ("good.dump --along 3 -5", "--along: LO must be < HI, got 3 -5"),

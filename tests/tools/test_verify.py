@@ -182,7 +182,6 @@ def test_a_run_that_fails_is_one_line(slope):
 
 @pytest.mark.parametrize("arguments, message", [
     ("--only 99_none", "--only: must be of 01_restitution, got 99_none"),
-    ("--jobs 0", "argument --jobs: must be a whole number >= 1"),
     ("--lmp none", "--lmp: must lead to the LAMMPS program"),
     ("-o lmp", "-o: must be a folder, got lmp"),
     ("--quick --only 01_restitution", "--only: has no claims that are quick, got 01_restitution"),
