@@ -232,7 +232,7 @@ def card(entry: Any, whose: str, confidence: float, number: Callable[[str, str, 
                   for name, side in (("low", quantile.low), ("high", quantile.high))]
         gap = getattr(quantile, "gap", None)
         value = number(share, unit, quantile.value) if not gap else " to ".join(number(
-            f"{share}, {end} of the gap where no run ends", unit, side) for end, side in zip(("begin", "end"), gap))
+            f"{share}, {end} of the gap where no run ends", unit, side) for end, side in zip(("start", "end"), gap))
         parts.append(CardPart(value, share, f"{IN_GAP} " * bool(gap) + band(bounds, unit, confidence),
                               unit="" if quantile.value is None else unit))
     shown = next((part for part, one in zip(parts, entry.quantiles) if one.share == 0.9), parts[-1])

@@ -260,7 +260,7 @@ def describe_basis(number: Headline, letter: Letter, write: Write) -> str:
         text += f"; {count_runs_of(number, other)} give {write(f'{VOLUME}, other runs', 'm3', beside.volume_m3)} m3"
     if letter.gap:
         low, high = (write(f"{VOLUME}, {end} of the gap where no run ends", "m3", value)
-                     for end, value in zip(("begin", "end"), letter.gap))
+                     for end, value in zip(("start", "end"), letter.gap))
         text += f"; no run ends where these events do, between {low} and {high} m3, of which the larger counts"
     parts = describe_band_shares(number) if number.high_m3 is not None else ""
     return f"{text}." + (f" The band, as the root of the squares: {parts}." if parts else "")
