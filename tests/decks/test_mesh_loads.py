@@ -82,6 +82,11 @@ def test_what_comes_between_rows_and_after_the_last_one_is_in_the_series(tmp_pat
         if n == 1:
             assert found[0][1] == pytest.approx(np.sqrt(sum(series[f"m{axis}"] ** 2 for axis in "xyz")).max(), rel=1e-9)
     assert found[0][1] > found[0][0] > 0 and found[1] == found[0]
+    # the row at the end, of a continued run without a step, too
+    before, keywords = (tmp_path / "out.csv").read_text(), f"point 0.5 1 7 output out {every}"
+    run_case(tmp_path, "run 60\nwrite_restart end.restart", keywords=keywords)
+    run_case(tmp_path, "run 0", keywords=keywords, begin="read_restart end.restart")
+    assert (tmp_path / "out.csv").read_text() == before
 
 
 def test_what_is_written_of_a_lower_surface_is_that_of_its_file(tmp_path):
