@@ -297,7 +297,7 @@ def test_a_valley_that_leads_back_comes_to_a_road(beside, turn):
 def test_a_road_behind_the_crown(lane, behind):
     """The mass goes away from it: no known event says that it is reached."""
     mass = disc(hillside(), (300, 300))
-    among = known_events.Known(known_events.compute_known_mobility(mass, known_events.choice()), "", mass.raster)
+    among = known_events.Known(known_events.compute_known_mobility(mass, known_events.choice()), "", mass)
     counts = among.found.decides
     at = fall_path.at_road(counts.path, lane, mass.raster, counts.width)
     events = how_far.compute_events_at_road(among, lane)
@@ -305,6 +305,39 @@ def test_a_road_behind_the_crown(lane, behind):
                                                                                   (0.0, True))
     told = results.at_road(among.found, at)
     assert (told["at_least"] is None and told["exceedance_landslides"] is None) == behind
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("bearing", [0, 90, 217])
+def test_a_flank_of_a_wide_body_comes_to_a_road_before_its_middle(bearing, side):
+    """A road that runs down across the slope, 100 m below one flank and 500 m below the middle."""
+    (ground, x, y), down = plane(bearing)
+    across, middle = side * np.array([-down[1], down[0]]), np.array([1200.0, 600.0])
+    left, below = ((np.stack([x, y], axis=-1) - middle) @ way for way in (across, down))
+    mass = body.of_arrays(ground, 3.0 * ((abs(left) < 400) & (abs(below) < 50)), "wide")
+    found = known_events.compute_known_mobility(mass, known_events.choice())
+    counts, among = found.decides, known_events.Known(found, "", mass)
+    ends = ([middle + 400 * at * across + (150 + 400 * (1 - at)) * down for at in (1.1, -1.1)])
+    lane = LineString(ends).buffer(8)
+    alone = fall_path.at_road(counts.path, lane, ground, counts.width)
+    assert alone.met and alone.length == pytest.approx(600, abs=20)
+    events = how_far.compute_events_at_road(among, lane)
+    strip = counts.width / 2        # half of it lies between the flank and the middle of its strip
+    assert 200 - 20 < events.near < 200 + strip + 20
+    assert events.reached == counts.shares(events.near) > counts.shares(alone.length)
+    drawn = fall_path.given(mass, LineString([middle - 50 * down, middle + 550 * down]), "line")
+    assert fall_path.first_at_road(mass, drawn, lane, counts.width).length == pytest.approx(600, abs=20)
+
+
+def test_the_strips_of_a_body_across_a_valley_come_to_its_stream():
+    """They do not go on side by side, where a road lies beside the stream and above it."""
+    ground, x, y = terrain(lambda x, y: 1000 - 0.2 * x + 0.4 * abs(y - 600))
+    mass = body.of_arrays(ground, 3.0 * ((abs(x - 300) < 50) & (abs(y - 600) < 200)), "across")
+    paths = list(fall_path.trace_strips(mass, 50.0, 2000.0))
+    assert len(paths) == 8 and np.ptp([path.y[0] for path in paths]) > 300
+    assert max(abs(np.interp(1200, path.x, path.y) - 600) for path in paths) < 10
+    counts = known_events.compute_known_mobility(mass, known_events.choice()).decides
+    assert fall_path.first_at_road(mass, counts.path, box(1200, 740, 1300, 750), counts.width).beside > 130
 
 
 @pytest.mark.skipif(not FRANK.is_dir(), reason="the rasters of inputs/30_frank are not here")

@@ -57,7 +57,7 @@ def run_mobility(args: Request) -> None:
     path = fall_path.given(mass, line_of(args.path, args.local, mass), args.path) if args.path else None
     mobilities = known.compute_known_mobility(mass, asked, path)
     counts = mobilities.decides
-    met = lane and fall_path.at_road(counts.path, lane, mass.raster, counts.width)
+    met = lane and fall_path.first_at_road(mass, counts.path, lane, counts.width)
     source = results.Source(args.terrain, mass, asked, lane)
     results.write_mobility(args.output, mobilities, source, met)
     print("\n".join(results.describe_mobility(mobilities, source, met)))
@@ -65,7 +65,7 @@ def run_mobility(args: Request) -> None:
         for name in site_roads.names(site):
             other = roads.read_local(site.folder / site_roads.file_name(name), mass.raster, site.choices.road.asked,
                                      local=True).polygon
-            at = fall_path.at_road(counts.path, other, mass.raster, counts.width)
+            at = fall_path.first_at_road(mass, counts.path, other, counts.width)
             print(outlook.road_text(counts, at, name))
     for line in (*results.find_mobility_caveats(mass, mobilities), *results.disagreement(mass, mobilities)):
         tell(line)

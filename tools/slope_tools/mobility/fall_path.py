@@ -8,7 +8,7 @@ It ends where the terrain does. Or it is a line that the user drew.
 """
 import heapq
 import math
-from typing import List, NamedTuple, Optional, Tuple
+from typing import Iterator, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 from affine import Affine
@@ -72,14 +72,31 @@ class AtRoad(NamedTuple):
 
 def trace(body: Body, longest: float) -> FallPath:
     """The path of a body, at most about longest (m)."""
-    centre, downhill = body.fall_line()
-    crown = body.crown
-    above = max(0.0, float((centre - crown[:2]) @ downhill))
-    ground = Smooth(body)
+    return trace_from(body, Smooth(body), *body.fall_line(), longest)
+
+
+def trace_from(body: Body, ground: "Smooth", centre: np.ndarray, downhill: np.ndarray, longest: float) -> FallPath:
+    """The path through a centre of the body; ground: its pits are filled."""
+    above = max(0.0, float((centre - body.crown[:2]) @ downhill))
     points, edge = descend(ground, centre, downhill, longest)
     line = LineString([centre - above * downhill, *points] if above > 0 else points)
     line = line.simplify(ground.step * ground.cell)       # the descent along a valley swings from side to side
     return path_along(body, line, TERRAIN if edge else EVENTS)
+
+
+def trace_strips(body: Body, width: float, longest: float) -> Iterator[FallPath]:
+    """The paths of strips of the body, from flank to flank, each about as wide (m) as the mass; none of one strip."""
+    centre, downhill = body.fall_line()
+    cells = np.nonzero(body.main)
+    place = np.column_stack(body.raster.transform @ (np.array(cells[::-1]) + 0.5))
+    across = (place - centre) @ (-downhill[1], downhill[0])
+    strips = round(np.ptp(across) / width)
+    mine = np.minimum((across - across.min()) / np.ptp(across) * strips, strips - 1).astype(int)
+    ground = Smooth(body)
+    for strip in np.unique(mine) if strips > 1 else ():
+        own, ground.z = mine == strip, ground.unfilled.copy()
+        middle = np.average(place[own], axis=0, weights=body.main[cells][own])
+        yield trace_from(body, ground, middle, downhill, longest)
 
 
 def given(body: Body, line: LineString, where) -> FallPath:
@@ -150,7 +167,8 @@ class Smooth:
         every = max(1, min(window // 4, min(z.shape) // 4))
         first = [(count - 1) % every // 2 for count in z.shape]
         thin = tuple(slice(start, None, every) for start in first)
-        self.z, self.known = z[thin].copy(), minimum_filter(known, every)[thin]
+        self.unfilled, self.known = z[thin], minimum_filter(known, every)[thin]
+        self.z = self.unfilled.copy()
         # of each patch between four nodes
         self.patches = self.known[:-1, :-1] & self.known[:-1, 1:] & self.known[1:, :-1] & self.known[1:, 1:]
         self.transform = (body.raster.transform @ Affine.translation(first[1] + 0.5, first[0] + 0.5)
@@ -310,8 +328,19 @@ def below(ground: Smooth, start, other, level: float) -> bool:
 
 # --- a road on it ---
 
+def first_at_road(body: Body, path: FallPath, road: BaseGeometry, width: float) -> AtRoad:
+    """Where a body comes to a road (polygons in local metres) by the shortest way: that of its path, or, unless a user
+    drew it, of a strip; if none comes as near as the mass is wide (m), the way that comes nearest.
+    """
+    paths = [path, *(trace_strips(body, width, float(path.length[-1])) if path.end != LINE else ())]
+    several = [at_road(one, road, body.raster, width) for one in paths]
+    ahead = [at for at in several if not at.behind] or several[:1]
+    near = [at for at in ahead if at.beside <= width]
+    return min(near, key=lambda at: at.length) if near else min(ahead, key=lambda at: at.beside)
+
+
 def at_road(path: FallPath, road: BaseGeometry, ground: Raster, width: float) -> AtRoad:
-    """road: polygons in local metres; ground: before the collapse; width: of the mass, m."""
+    """Of one path; ground: before the collapse."""
     met = first_met(path, road)
     away = np.array([road.distance(Point(place)) for place in zip(path.x, path.y)])
     within = np.flatnonzero((away <= width) & (path.length >= width))

@@ -176,10 +176,10 @@ class Found(NamedTuple):
 
 
 class Known(NamedTuple):
-    """found: of a mass, None and why (a sentence without its full stop) where it has no fall path; ground: its own."""
+    """found: of a mass, None and why (a sentence without its full stop) where it has no fall path."""
     found: Optional[Found]
     why: str
-    ground: Optional[Raster] = None
+    mass: Optional[Body] = None
 
 
 def choice(name: Optional[str] = None, left_out: Sequence[str] = (), confined: str = "unknown") -> Choice:
@@ -221,7 +221,7 @@ def of_mass(raster: Raster, before: np.ndarray, depth: np.ndarray, kept_choice: 
     """
     try:
         mass = body.read_mobility_body(site) if site else body.of_arrays(raster._replace(z=before), depth, "the run")
-        return Known(compute_known_mobility(mass, of_about(kept_choice)), "", mass.raster)
+        return Known(compute_known_mobility(mass, of_about(kept_choice)), "", mass)
     except SlopeError as error:
         return Known(None, f"The runs cannot be compared with known events: {error}")
 

@@ -8,7 +8,7 @@ import csv
 import math
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from ..mobility import body as falling
 from ..mobility import fall_path, known
 from ..releases import release, release_files
 from ..runs import slip_run
-from ..slips import bishop, bodies, columns, failed
+from ..slips import bishop, bodies, failed
 from ..survey import polygons, rasters, vectors
 from ..survey.features import attribute, depth_of, size_of
 from .choices import TABLE, WHAT, Choices
@@ -263,27 +263,15 @@ def reaches(choices: Choices, mass: falling.Body, lane) -> Dict[str, Any]:
         mobility = known.compute_known_mobility(mass, known.choice(confined=choices.confined)).decides
     except SlopeError as error:     # without a fall path nothing says that it does not reach the road
         return {"known_share": None, "known_law": str(error), "why_not": ""}
-    several = [fall_path.at_road(path, lane, mass.raster, mobility.width) for path in paths_of_flanks(mass, mobility)]
-    near = [one for one in several if one.beside <= mobility.width]
-    met = min(near, key=lambda at: at.length) if near else min(several, key=lambda at: at.beside)
+    met = fall_path.first_at_road(mass, mobility.path, lane, mobility.width)
     share = float(mobility.exceedance(met.length))
     why = ""
-    if not near:
+    if met.beside > mobility.width:
         why = f"its fall path stays {met.beside:.0f} m away from the road"
     elif share < choices.reach:
         why = (f"{cents(share)} of known events of its volume and height go as far as the road, {met.length:.0f} "
                f"m, {met.fall:.0f} m down (--reach {choices.reach:g})")
     return {"known_share": share, "known_law": mobility.law.name, "why_not": why}
-
-
-def paths_of_flanks(mass: falling.Body, mobility: known.Mobility) -> Iterator[fall_path.FallPath]:
-    """The fall path of a body, and the same beside it, from flank to flank, no farther apart than the mass is wide."""
-    path, (_, (east, north)) = mobility.path, mass.fall_line()
-    yield path
-    x, y = (values[mass.depth > 0] for values in columns.centres(mass.raster))
-    beside = (y - path.y[0]) * east - (x - path.x[0]) * north
-    for left in np.linspace(beside.min(), beside.max(), 2 + int(np.ptp(beside) / mobility.width)):
-        yield path._replace(x=path.x - left * north, y=path.y + left * east)
 
 
 def read_route_body(folder: Path, number: int, density: Optional[float]) -> bodies.Body:

@@ -52,9 +52,8 @@ def describe_outlook(folder: Path) -> List[str]:
         length, fall = (metres(values[-1]) for values in (counts.path.length, counts.path.fall))
         lines += [f"fall path of {length}, down to {fall} below the crown, {counts.path.end}",
                   events_text(counts, asked)]
-        met = {name: fall_path.at_road(counts.path, roads.read_local(
-            folder / site_roads.file_name(name), mass.raster, choices.road.asked, local=True).polygon, mass.raster,
-            counts.width)
+        met = {name: fall_path.first_at_road(mass, counts.path, roads.read_local(
+            folder / site_roads.file_name(name), mass.raster, choices.road.asked, local=True).polygon, counts.width)
             for name in site_roads.names(site) or [""] * bool(choices.road.file)}
         lines += [road_text(counts, one, name) for name, one in met.items()]
         if why := terrain_ends(counts, mass.raster):

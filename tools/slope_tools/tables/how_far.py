@@ -150,12 +150,12 @@ class EventsAtRoad(NamedTuple):
 def compute_events_at_road(among: known.Known, road: Any) -> Optional[EventsAtRoad]:
     """What they did at a road, polygons in local metres; None where the mass has no fall path."""
     mobilities = among.found
-    if mobilities is None or among.ground is None:
+    if mobilities is None or among.mass is None:
         return None
     counts, median = mobilities.decides, mobilities.strict and mobilities.strict.length_at(0.5)
     if mobilities.strict and median is None:
         median = float(counts.path.length[-1])
-    at = fall_path.at_road(counts.path, road, among.ground, counts.width)
+    at = fall_path.first_at_road(among.mass, counts.path, road, counts.width)
     if at.behind:
         return EventsAtRoad(median, at.length, at.passed, (0.0, 0.0), (0.0, 0.0), at.beside)
     return EventsAtRoad(median, at.length, at.passed, counts.shares(at.length), counts.shares(at.passed))
