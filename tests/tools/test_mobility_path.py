@@ -324,9 +324,57 @@ def test_a_flank_of_a_wide_body_comes_to_a_road_before_its_middle(bearing, side)
     events = how_far.compute_events_at_road(among, lane)
     strip = counts.width / 2        # half of it lies between the flank and the middle of its strip
     assert 200 - 20 < events.near < 200 + strip + 20
-    assert events.reached == counts.shares(events.near) > counts.shares(alone.length)
-    drawn = fall_path.given(mass, LineString([middle - 50 * down, middle + 550 * down]), "line")
-    assert fall_path.first_at_road(mass, drawn, lane, counts.width).length == pytest.approx(600, abs=20)
+    assert events.reached == pytest.approx(counts.shares(events.near), abs=0.01)
+    assert min(events.reached) > max(counts.shares(alone.length)) + 0.03
+    for end in (550, 1e5):          # on the terrain, and beyond
+        drawn = fall_path.given(mass, LineString([middle - 50 * down, middle + end * down]), "line")
+        by_line = known_events.compute_known_mobility(mass, known_events.choice(), drawn)
+        way = known_events.way_to_road(mass, by_line, lane)
+        assert way.own and way.at.length == pytest.approx(600, abs=20)
+
+
+def to_road(mass, lane):
+    """The Way of a body to a road, the shares along it, and those at its length along the path of the mass."""
+    found = known_events.compute_known_mobility(mass, known_events.choice())
+    way = known_events.way_to_road(mass, found, lane)
+    return way, way.mobilities.decides.shares(way.at.length), found.decides.shares(way.at.length)
+
+
+def test_the_share_at_a_road_is_of_the_path_that_leads_there():
+    """Below one half of the body the ground falls 0.75, below the other, where its path goes down, 0.25."""
+    ground, x, y = terrain(lambda x, y: 1000 - (0.25 + 0.5 / (1 + np.exp(-(y - 800) / 30))) * np.maximum(x - 350, 0)
+                           - 0.4 * np.minimum(x, 350))
+    mass = body.of_arrays(ground, 3.0 * ((abs(x - 300) < 50) & (abs(y - 600) < 400)), "both")
+    for lane in (LineString([(700, 900), (700, 1200)]), LineString([(700, 0), (700, 1200)])):
+        way, shares, along = to_road(mass, lane.buffer(8))
+        assert way.at.met and not way.own and max(along) < 0.5 and min(shares) > 0.7
+
+
+def test_a_strip_goes_on_where_the_path_has_left_the_terrain():
+    """The middle falls off a terrain that has a hole below it, the flank comes to a road beyond."""
+    ground, x, y = terrain(lambda x, y: 1000 - 0.5 * x)
+    ground.z[(x > 500) & (abs(y - 600) < 150)] = np.nan
+    mass = body.of_arrays(ground, 3.0 * ((abs(x - 300) < 50) & (abs(y - 600) < 400)), "wide")
+    way, shares, _ = to_road(mass, LineString([(1000, 900), (1000, 1200)]).buffer(8))
+    assert way.at.met and way.at.length == pytest.approx(742, abs=20)
+    assert min(shares) > 0.75
+
+
+@pytest.mark.parametrize("near", [300, 1000])
+def test_the_smaller_of_two_bodies_comes_to_a_road(near):
+    """The fall path of the larger stays away from it; of either the road counts that to which most events come."""
+    ground, x, y = terrain(lambda x, y: 1000 - 0.5 * x)
+    large, small = (3.0 * ((abs(x - at) < 50) & (abs(y - middle) < wide))
+                    for at, middle, wide in ((300, 250, 100), (700, near, 60)))
+    mass = body.of_arrays(ground, large + small, "two")
+    lane = LineString([(900, near - 100), (900, near + 100)]).buffer(8)
+    way, shares, along = to_road(mass, lane)
+    assert not way.own and way.at.met and way.at.length == pytest.approx(242, abs=20)
+    alone = to_road(body.of_arrays(ground, small, "small"), lane)
+    assert min(shares) >= min(alone[1]) > 0.7       # of the volume of both
+    events = how_far.compute_events_at_road(known_events.Known(
+        known_events.compute_known_mobility(mass, known_events.choice()), "", mass), lane)
+    assert (events.near, events.reached) == (way.at.length, shares)
 
 
 def test_the_strips_of_a_body_across_a_valley_come_to_its_stream():
@@ -336,8 +384,7 @@ def test_the_strips_of_a_body_across_a_valley_come_to_its_stream():
     paths = list(fall_path.trace_strips(mass, 50.0, 2000.0))
     assert len(paths) == 8 and np.ptp([path.y[0] for path in paths]) > 300
     assert max(abs(np.interp(1200, path.x, path.y) - 600) for path in paths) < 10
-    counts = known_events.compute_known_mobility(mass, known_events.choice()).decides
-    assert fall_path.first_at_road(mass, counts.path, box(1200, 740, 1300, 750), counts.width).beside > 130
+    assert to_road(mass, box(1200, 740, 1300, 750))[0].at.beside > 130
 
 
 @pytest.mark.skipif(not FRANK.is_dir(), reason="the rasters of inputs/30_frank are not here")
@@ -513,9 +560,10 @@ def test_pictures(known, tmp_path):
     """Drawn from what is there: with a road, and of a mass that no set covers."""
     mass = disc(hillside(), (300, 300))
     lane = box(1000, 0, 1020, 1190)
-    charts.draw_map(tmp_path / "map.png", known, mass, lane)
+    charts.draw_map(tmp_path / "map.png", known, mass, lane, known_events.Way(None, known_events.Found(None, known),
+                                                                              False))
     found = known_events.compute_known_mobility(mass, known_events.choice(), known.path)
     out = found._replace(by_set=found.by_set._replace(outside=["x"]))
     at = fall_path.at_road(known.path, lane, mass.raster, known.width)
-    charts.draw_profile(tmp_path / "profile.png", out, mass, at)
+    charts.draw_profile(tmp_path / "profile.png", out, mass, known_events.Way(at, found, False))
     assert all((tmp_path / name).read_bytes()[:4] == b"\x89PNG" for name in ("map.png", "profile.png"))

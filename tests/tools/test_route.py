@@ -1211,7 +1211,7 @@ def test_the_share_of_a_wide_body_is_that_of_the_flank_that_reaches_the_road_fir
     oblique = LineString([(185, 155), (95, 10)]).buffer(4)
     below = LineString([(15, 155), (185, 155)]).buffer(4)
     mobility = search.known.compute_known_mobility(wide, search.known.choice()).decides
-    middle = search.fall_path.at_road(mobility.path, oblique, wide.raster, mobility.width)
+    middle = search.known.fall_path.at_road(mobility.path, oblique, wide.raster, mobility.width)
     assert middle.met and mobility.exceedance(middle.length) < 0.5
     flank, all_of_it = (search.reaches(dataclasses.replace(given, reach=0.5), wide, road) for road in (oblique, below))
     assert flank["known_share"] == pytest.approx(all_of_it["known_share"], abs=0.05) and not flank["why_not"]

@@ -154,8 +154,9 @@ WORDS: Dict[str, Union[str, Words]] = {
              "vertical datums are not compared, are they the same?",
     "parts": "the body is in {parts} parts that do not touch, of {volumes} m3{rest}: is that the body you mean?",
     "several bodies": "several bodies that do not touch: the fall path, along which runs and known events are "
-                      "measured, is that of the largest, {volume:,.0f} m3, and says nothing of roads below the others; "
-                      "known events are those of the volume of all, {all:,.0f} m3. One site for each body?",
+                      "measured, is that of the largest, {volume:,.0f} m3; which events reach a road is that of the "
+                      "body of which most do; all are events of the volume of all, {all:,.0f} m3. One site for each "
+                      "body?",
     # of a body and its balls
     "no program": "no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown",
     "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use an elevation model that is "

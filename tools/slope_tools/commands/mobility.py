@@ -56,8 +56,7 @@ def run_mobility(args: Request) -> None:
     lane = road_of(args, site, mass)
     path = fall_path.given(mass, line_of(args.path, args.local, mass), args.path) if args.path else None
     mobilities = known.compute_known_mobility(mass, asked, path)
-    counts = mobilities.decides
-    met = lane and fall_path.first_at_road(mass, counts.path, lane, counts.width)
+    met = lane and known.way_to_road(mass, mobilities, lane)
     source = results.Source(args.terrain, mass, asked, lane)
     results.write_mobility(args.output, mobilities, source, met)
     print("\n".join(results.describe_mobility(mobilities, source, met)))
@@ -65,8 +64,7 @@ def run_mobility(args: Request) -> None:
         for name in site_roads.names(site):
             other = roads.read_local(site.folder / site_roads.file_name(name), mass.raster, site.choices.road.asked,
                                      local=True).polygon
-            at = fall_path.first_at_road(mass, counts.path, other, counts.width)
-            print(outlook.road_text(counts, at, name))
+            print(outlook.road_text(known.way_to_road(mass, mobilities, other), name))
     for line in (*results.find_mobility_caveats(mass, mobilities), *results.disagreement(mass, mobilities)):
         tell(line)
     print(f"wrote {', '.join(str(args.output / name) for name in results.FILES)}")

@@ -46,6 +46,13 @@ class Body(NamedTuple):
         volumes = np.bincount(parts.ravel(), self.depth.ravel())
         return np.where(parts == volumes.argmax(), self.depth, 0.0)
 
+    @property
+    def parts(self) -> List["Body"]:
+        """The parts that do not touch, each alone, the largest first; without those that hold less than SIDE."""
+        labels, count = label(self.depth > 0, np.ones((3, 3)))
+        several = [self._replace(depth=np.where(labels == k, self.depth, 0.0)) for k in range(1, count + 1)]
+        return sorted((part for part in several if part.volume >= SIDE * self.volume), key=lambda part: -part.volume)
+
     def beside(self) -> List[Finding]:
         """That the fall path is that of one body of several."""
         main = float(self.main.sum()) * self.cell ** 2

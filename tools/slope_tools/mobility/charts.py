@@ -11,15 +11,15 @@ from ..drawing import figures, maps, palettes, pictures
 from ..survey.crs import crs_name
 from ..survey.resampling import sample
 from .body import Body
-from .fall_path import AtRoad
-from .known import WORDS, Found, Mobility
+from .known import WORDS, Found, Mobility, Way
 
 MARKED = (0.9, 0.5, 0.1, 0.01)      # probabilities that are marked on the path
 STYLES = ("-", "--", ":")           # of the curve that counts, and the others
 
 
-def draw_map(path: Path, mobility: Mobility, body: Body, road: Optional[BaseGeometry]) -> None:
-    """Relief, body, road, and the path in the colour of the exceedance that counts."""
+def draw_map(path: Path, mobility: Mobility, body: Body, road: Optional[BaseGeometry],
+             to_road: Optional[Way] = None) -> None:
+    """Relief, body, road, and the path in the colour of the exceedance that counts; dashed that to the road."""
     way, raster = mobility.path, body.raster
     row, column = np.nonzero(body.depth)
     xs, ys = raster.transform @ np.array([column + 0.5, row + 0.5])
@@ -39,6 +39,9 @@ def draw_map(path: Path, mobility: Mobility, body: Body, road: Optional[BaseGeom
         drawn = axes.add_collection(LineCollection(np.stack([points[:-1], points[1:]], axis=1), cmap=palettes.PATH,
                                                    norm=Normalize(0, 1), linewidths=3, array=middle))
         figure.colorbar(drawn, cax=axes.inset_axes([1.12, 0, 0.03, 1]), label="share of known events that go beyond")
+        if to_road and not to_road.own:
+            other = to_road.mobilities.decides.path
+            axes.plot(other.x, other.y, "--", color="black", lw=0.8)
         axes.plot(*way.crown[:2], "^", color=figures.RELEASE, ms=6, mec="white", mew=0.5)
         for share in MARKED:
             length = mobility.length_at(share)
@@ -50,8 +53,9 @@ def draw_map(path: Path, mobility: Mobility, body: Body, road: Optional[BaseGeom
         maps.save(figure, path)
 
 
-def draw_profile(path: Path, mobilities: Found, body: Body, road: Optional[AtRoad]) -> None:
-    """Ground along the path above, probabilities below: of the events that count, of others the curve that would."""
+def draw_profile(path: Path, mobilities: Found, body: Body, to_road: Optional[Way]) -> None:
+    """Ground along the path above, probabilities below: of the events that count, of others the curve that would; the
+    road by the path that leads there."""
     counts = mobilities.decides
     way = counts.path
     ground = way.elevation(body)
@@ -69,8 +73,15 @@ def draw_profile(path: Path, mobilities: Found, body: Body, road: Optional[AtRoa
                 below.plot(way.length, one.curves[one.chosen], color=figures.COLOURS[1], label=one.law.name)
         below.set(xlabel="length along the fall path (m)", ylabel="share that goes beyond", ylim=(0, 1.02),
                   xlim=(0, way.length[-1]))
+        if to_road and not to_road.own:
+            other = to_road.mobilities.decides
+            above.plot(other.path.length, other.path.elevation(body), "--", color=figures.ROAD, lw=0.8,
+                       label="along the part of the mass that comes to the road")
+            below.plot(other.path.length, other.curves[other.chosen], "--", color=figures.ROAD, lw=0.8,
+                       label="of that part")
         for axes in (above, below):
-            if road:
+            if to_road:
+                road = to_road.at
                 axes.axvline(road.length, color=figures.ROAD, lw=1.0,
                              label="road" if road.met else f"nearest to the road, {road.beside:.0f} m beside")
             axes.legend(loc="upper right")

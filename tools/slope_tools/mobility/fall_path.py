@@ -39,7 +39,7 @@ class FallPath(NamedTuple):
     """Points along the path, from the crown's level on; the first has length 0.
 
     fall: how far the ground (before the collapse) lies below the crown, 0 where it does not; end: TERRAIN, EVENTS or
-    LINE; crown: x, y, z of the highest ground in the body, beside or on the path's beginning.
+    LINE; crown: x, y, z of the highest ground in the body, beside or on the path's beginning; drawn: by a user.
     """
     x: np.ndarray           # local m
     y: np.ndarray
@@ -47,6 +47,7 @@ class FallPath(NamedTuple):
     fall: np.ndarray        # m
     end: str
     crown: Tuple[float, float, float]
+    drawn: bool = False
 
     def elevation(self, body: Body) -> np.ndarray:
         """Of the ground before the collapse, m."""
@@ -107,14 +108,14 @@ def given(body: Body, line: LineString, where) -> FallPath:
     crown = body.crown
     if math.dist(line.coords[-1][:2], crown[:2]) < math.dist(line.coords[0][:2], crown[:2]):
         line = LineString(line.coords[::-1])
-    path = path_along(body, line, LINE)
+    path = path_along(body, line, LINE)._replace(drawn=True)
     beyond = np.flatnonzero(~np.isfinite(sample(body.raster, path.x, path.y)))
     if not len(beyond):
         return path
     if beyond[0] < 2:
         raise SlopeError(where, "must begin on the terrain, at its end nearer to the crown")
     x, y, length, fall = (values[:beyond[0]] for values in (path.x, path.y, path.length, path.fall))
-    return FallPath(x, y, length, fall, TERRAIN, crown)
+    return FallPath(x, y, length, fall, TERRAIN, crown, True)
 
 
 def path_along(body: Body, line: LineString, end: str) -> FallPath:
@@ -328,19 +329,8 @@ def below(ground: Smooth, start, other, level: float) -> bool:
 
 # --- a road on it ---
 
-def first_at_road(body: Body, path: FallPath, road: BaseGeometry, width: float) -> AtRoad:
-    """Where a body comes to a road (polygons in local metres) by the shortest way: that of its path, or, unless a user
-    drew it, of a strip; if none comes as near as the mass is wide (m), the way that comes nearest.
-    """
-    paths = [path, *(trace_strips(body, width, float(path.length[-1])) if path.end != LINE else ())]
-    several = [at_road(one, road, body.raster, width) for one in paths]
-    ahead = [at for at in several if not at.behind] or several[:1]
-    near = [at for at in ahead if at.beside <= width]
-    return min(near, key=lambda at: at.length) if near else min(ahead, key=lambda at: at.beside)
-
-
 def at_road(path: FallPath, road: BaseGeometry, ground: Raster, width: float) -> AtRoad:
-    """Of one path; ground: before the collapse."""
+    """road: polygons in local metres; ground: before the collapse; width: of the mass, m."""
     met = first_met(path, road)
     away = np.array([road.distance(Point(place)) for place in zip(path.x, path.y)])
     within = np.flatnonzero((away <= width) & (path.length >= width))

@@ -8,9 +8,10 @@ all before: the running minimum counts. Of a fall that none of the events had th
 of the last point before of which they do, 1 before the first one, and `said` is False.
 """
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
+from shapely.geometry.base import BaseGeometry
 
 from .. import digits
 from ..errors import SlopeError
@@ -18,11 +19,12 @@ from ..survey.rasters import Raster
 from . import body, events, fall_path, landslides
 from .body import Body
 from .events import Relation
-from .fall_path import FallPath
+from .fall_path import AtRoad, FallPath
 from .landslides import LandslideKind
 
 FAR = 0.999             # the path is followed to where so many events ended
 HALF = 0.5
+EQUAL = 0.01            # shares that differ by less
 WORDS = {"confined": "laterally confined", "unconfined": "not laterally confined",
          "mixture": "confined or not, as often as known events",
          "landslides_narrow": "the smaller scatter", "landslides_wide": "the larger scatter",
@@ -228,13 +230,15 @@ def of_mass(raster: Raster, before: np.ndarray, depth: np.ndarray, kept_choice: 
 
 # --- the curves of a body ---
 
-def compute_mobility(body: Body, law: Law, chosen: Optional[str] = None, path: Optional[FallPath] = None) -> Mobility:
-    """The Mobility of a body; chosen: kind of the curve that counts, None: the law's last one; path: another one.
+def compute_mobility(body: Body, law: Law, chosen: Optional[str] = None, path: Optional[FallPath] = None,
+                     volume: Optional[float] = None) -> Mobility:
+    """The Mobility of a body; chosen: kind of the curve that counts, None: the law's last one; path: another one;
+    volume: million m3, of the mass that the body is a part of.
 
     Raises SlopeError for a body on level ground.
     """
     path = path or path_of(body, [law])
-    volume, toe = body.volume / 1e6, fall_path.from_toe(body, path).length[0]
+    volume, toe = volume or body.volume / 1e6, fall_path.from_toe(body, path).length[0]
     low, high = law.falls
     covered = (path.fall >= low) & (path.fall <= high) & (path.fall > 0) & (path.length > 0) & (path.length >= toe)
     curves = {}
@@ -248,8 +252,71 @@ def compute_mobility(body: Body, law: Law, chosen: Optional[str] = None, path: O
 
 def path_of(body: Body, laws: Sequence[Law]) -> FallPath:
     """The fall path as far as hardly any of the laws' events went."""
-    volume, relief = body.volume / 1e6, body.crown[2] - float(np.nanmin(body.raster.z))
-    return fall_path.trace(body, max(law.farthest(FAR, volume, relief) for law in laws))
+    return fall_path.trace(body, farthest(body, laws, body.volume / 1e6))
+
+
+def farthest(body: Body, laws: Sequence[Law], volume: float) -> float:
+    """How far (m) a path is followed."""
+    relief = body.crown[2] - float(np.nanmin(body.raster.z))
+    return max(law.farthest(FAR, volume, relief) for law in laws)
+
+
+# --- at a road ---
+
+class Way(NamedTuple):
+    """How a mass comes to a road: where, and what the events say along the path that leads there; own: which is that of
+    the mass, not of a strip of it or of another body."""
+    at: AtRoad
+    mobilities: Found
+    own: bool
+
+    @property
+    def share(self) -> float:
+        """Of the events that count, which come along it: by the mean of both scatters."""
+        return sum(self.mobilities.decides.shares(self.at.length)) / 2
+
+
+def way_to_road(mass: Body, mobilities: Found, road: BaseGeometry) -> Way:
+    """The Way by which most known events come to a road (polygons in local metres), among those that come as near as
+    the mass is wide, of nearly equal ones the shortest; if none does, that which comes nearest. A user's path is the
+    only one.
+    """
+    width = mobilities.decides.width
+
+    def way(path: FallPath, events_: Found, own: bool) -> Way:
+        return Way(fall_path.at_road(path, road, mass.raster, width), events_, own)
+    several = [way(mobilities.decides.path, mobilities, True)]
+    if not mobilities.decides.path.drawn:
+        several += [way(path, along(mobilities, part, path), False) for part, path in trace_others(mass, mobilities)]
+    ahead = [each for each in several if not each.at.behind] or several[:1]
+    near = [each for each in ahead if each.at.beside <= width]
+    if not near:
+        return min(ahead, key=lambda each: each.at.beside)
+    most = max(each.share for each in near)
+    return min((each for each in near if each.share > most - EQUAL), key=lambda each: round(each.at.length))
+
+
+def trace_others(mass: Body, mobilities: Found) -> Iterator[Tuple[Body, FallPath]]:
+    """Parts of a mass and their paths, beside that of the largest: of its strips, of other bodies and of their strips.
+    """
+    laws, width = [one.law for one in mobilities.each], mobilities.decides.width
+    for number, part in enumerate(mass.parts):
+        longest = farthest(part, laws, mobilities.decides.volume)
+        try:
+            if number:
+                yield part, fall_path.trace(part, longest)
+            for path in fall_path.trace_strips(part, width, longest):
+                yield part, path
+        except SlopeError:      # on level ground
+            continue
+
+
+def along(mobilities: Found, part: Body, path: FallPath) -> Found:
+    """The same events, of the volume of the whole mass, along the path of a part; whether they cover the mass stays."""
+    by_set, by_row = (one and compute_mobility(part, one.law, one.chosen, path, one.volume)._replace(
+        outside=one.outside) for one in mobilities)
+    assert by_row
+    return Found(by_set, by_row)
 
 
 def outside(mobility: Mobility) -> List[str]:

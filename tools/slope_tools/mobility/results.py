@@ -16,8 +16,8 @@ from ..survey import geopackage
 from ..survey.geopackage import Layer
 from . import body, lucas
 from .body import Body
-from .fall_path import LINE, TERRAIN, AtRoad
-from .known import WORDS, Choice, Found, Mobility, choice, compute_known_mobility
+from .fall_path import TERRAIN, AtRoad
+from .known import WORDS, Choice, Found, Mobility, Way, choice, compute_known_mobility
 from .landslides import NOT_OF_ROADS
 
 TABLE, SUMMARY, MAP, PROFILE = "mobility.csv", "mobility.yaml", "mobility_map.png", "mobility_profile.png"
@@ -104,7 +104,7 @@ def disagreement(mass: Body, mobilities: Found) -> List[Finding]:
 def find_mobility_caveats(mass: Body, mobilities: Found) -> List[Finding]:
     """What must be said: several bodies, out of range, or a path that ends too early."""
     counts = mobilities.decides
-    several = [*mass.beside()] if counts.path.end != LINE else []
+    several = [*mass.beside()] if not counts.path.drawn else []
     several += [Finding("outside of set", {"text": text}) for text in (mobilities.by_set.outside if mobilities.by_set
                                                                        else [])]
     if counts.length_at(0.5) is None and counts.path.end == TERRAIN:
@@ -144,10 +144,10 @@ def at_least(mobility: Mobility, length: float) -> Optional[float]:
     return float(mobility.curves[mobility.chosen][after[0]]) if mobility.in_range and len(after) else None
 
 
-def summarise_mobility(mobilities: Found, source: Source, road: Optional[AtRoad]) -> Dict[str, Any]:
+def summarise_mobility(mobilities: Found, source: Source, way: Optional[Way]) -> Dict[str, Any]:
     """What SUMMARY holds."""
     counts, by_set, row = mobilities.decides, mobilities.by_set, source.asked.row
-    path = counts.path
+    path, road = counts.path, way and way.at
     whole: Dict[str, Any] = {
         "slope_version": version(), "terrain": source.terrain, "volume_m3": source.body.volume,
         "crown": dict(zip("xyz", path.crown)), "in_range": bool(by_set and by_set.in_range),
@@ -156,9 +156,10 @@ def summarise_mobility(mobilities: Found, source: Source, road: Optional[AtRoad]
         "exceedance_is": counts.chosen, "confined_path": source.asked.confined}
     for one in mobilities.each:
         whole.update(of_events(one))
-    whole["road"] = road and {
-        "on_path": road.met, "behind": road.behind, "beside_path_m": road.beside, "length_m": road.length,
-        "passed_m": road.passed, "height_m": road.fall, "x": road.x, "y": road.y, **at_road(mobilities, road)}
+    whole["road"] = way and road and {
+        "on_path": road.met, "own_path": way.own, "behind": road.behind, "beside_path_m": road.beside,
+        "length_m": road.length, "passed_m": road.passed, "height_m": road.fall, "x": road.x, "y": road.y,
+        **at_road(way.mobilities, road)}
     whole["landslides"] = {"row": f"{row.type}:{row.path}", "events": row.events, "a": row.a, "b": row.b,
                            "deviations": list(row.deviations), "note": NOT_OF_ROADS,
                            **(whole["landslides"] or {})}
@@ -173,7 +174,7 @@ def summarise_mobility(mobilities: Found, source: Source, road: Optional[AtRoad]
                                         **lucas.opinion(source.body, path)._asdict()}, "files": list(FILES)}
 
 
-def describe_mobility(mobilities: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
+def describe_mobility(mobilities: Found, source: Source, way: Optional[Way]) -> List[str]:
     """What the user reads."""
     counts, path = mobilities.decides, mobilities.decides.path
     x, y, z = path.crown
@@ -188,11 +189,12 @@ def describe_mobility(mobilities: Found, source: Source, road: Optional[AtRoad])
             continue
         lines.append(f"{name}: {'these count' if mobility is counts else 'beside them'}, {WORDS[mobility.chosen]}")
         lines += [f"  {WORDS[kind]}: {lengths(mobility, kind)}" for kind in mobility.curves]
-    if road:
+    if way:
+        road = way.at
         where = "the road, first met" if road.met else \
             f"the road, which the path passes {metres(road.beside)} beside,"
-        lines.append(f"{where} after {metres(road.length)}, {metres(road.fall)} below the crown: "
-                     f"{describe_road_reach(counts, road)}")
+        lines.append(f"{where} after {metres(road.length)}, {metres(road.fall)} below the crown{describe_way(way)}: "
+                     f"{describe_road_reach(way)}")
     return [*lines, second_opinion(source.body, mobilities)]
 
 
@@ -209,8 +211,14 @@ def lengths(mobility: Mobility, kind: str) -> str:
             f"{'terrain' if mobility.path.end == TERRAIN else 'path'}: {percent(mobility.beyond_path(kind))}")
 
 
-def describe_road_reach(counts: Mobility, road: AtRoad) -> str:
+def describe_way(way: Way) -> str:
+    """Which path comes to the road, where that is not the mass's own."""
+    return "" if way.own or way.at.behind else " along the path of another part of the mass"
+
+
+def describe_road_reach(way: Way) -> str:
     """What the events that count say of the road."""
+    road, counts = way.at, way.mobilities.decides
     if road.behind:
         return "nothing, it lies behind the crown or as high"
     if not counts.says(road.length):
@@ -223,13 +231,13 @@ def describe_road_reach(counts: Mobility, road: AtRoad) -> str:
         road.passed > road.length and counts.says(road.passed))
 
 
-def write_mobility(folder: Path, mobilities: Found, source: Source, road: Optional[AtRoad]) -> None:
+def write_mobility(folder: Path, mobilities: Found, source: Source, road: Optional[Way]) -> None:
     """All files into a folder."""
     from . import charts        # matplotlib: only once all is there
     with disk.complete(folder, SUMMARY) as new:
         (new / TABLE).write_text(tabulate_path(mobilities, source.body), encoding="ascii")
         write_lines(new / LINES, mobilities, source.body)
-        charts.draw_map(new / MAP, mobilities.decides, source.body, source.road)
+        charts.draw_map(new / MAP, mobilities.decides, source.body, source.road, road)
         charts.draw_profile(new / PROFILE, mobilities, source.body, road)
         disk.write_yaml(new / SUMMARY, summarise_mobility(mobilities, source, road), "slope mobility: m, local x y, "
                         "volumes " "in m3; " "exceedance: share of known events that go farther")

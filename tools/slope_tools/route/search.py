@@ -20,7 +20,7 @@ from ..errors import SlopeError
 from ..geometry import extent_of
 from ..findings import Finding
 from ..mobility import body as falling
-from ..mobility import fall_path, known
+from ..mobility import known
 from ..releases import release, release_files
 from ..runs import slip_run
 from ..slips import bishop, bodies, failed
@@ -260,11 +260,11 @@ def make_factor_entry(factor: Optional[float]) -> Dict[str, Any]:
 def reaches(choices: Choices, mass: falling.Body, lane) -> Dict[str, Any]:
     """The share of known events that reach the road, and why a body is left out, "" if it is not."""
     try:
-        mobility = known.compute_known_mobility(mass, known.choice(confined=choices.confined)).decides
+        found = known.compute_known_mobility(mass, known.choice(confined=choices.confined))
     except SlopeError as error:     # without a fall path nothing says that it does not reach the road
         return {"known_share": None, "known_law": str(error), "why_not": ""}
-    met = fall_path.first_at_road(mass, mobility.path, lane, mobility.width)
-    share = float(mobility.exceedance(met.length))
+    met, events, _ = known.way_to_road(mass, found, lane)
+    share, mobility = float(events.decides.exceedance(met.length)), found.decides
     why = ""
     if met.beside > mobility.width:
         why = f"its fall path stays {met.beside:.0f} m away from the road"

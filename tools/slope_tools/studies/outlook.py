@@ -10,7 +10,7 @@ from ..digits import metres, three
 from ..ensembles.farther import REACHED
 from ..errors import SlopeError
 from ..geometry import extent
-from ..mobility import body, fall_path, known, results
+from ..mobility import body, known, results
 from ..mobility.known import Mobility
 from ..mobility.fall_path import TERRAIN, FallPath
 from ..releases import packing
@@ -52,13 +52,13 @@ def describe_outlook(folder: Path) -> List[str]:
         length, fall = (metres(values[-1]) for values in (counts.path.length, counts.path.fall))
         lines += [f"fall path of {length}, down to {fall} below the crown, {counts.path.end}",
                   events_text(counts, asked)]
-        met = {name: fall_path.first_at_road(mass, counts.path, roads.read_local(
-            folder / site_roads.file_name(name), mass.raster, choices.road.asked, local=True).polygon, counts.width)
+        met = {name: known.way_to_road(mass, decides, roads.read_local(
+            folder / site_roads.file_name(name), mass.raster, choices.road.asked, local=True).polygon)
             for name in site_roads.names(site) or [""] * bool(choices.road.file)}
-        lines += [road_text(counts, one, name) for name, one in met.items()]
+        lines += [road_text(one, name) for name, one in met.items()]
         if why := terrain_ends(counts, mass.raster):
             # behind all roads it is no reason against their numbers
-            behind = met and all(one.passed < counts.path.length[-1] for one in met.values())
+            behind = met and all(one.at.passed < counts.path.length[-1] for one in met.values())
             (lines if behind else floors).append(why)
     engine = Setup(Path(), Path())
     numbers = site_study.wanted(site, site_study.plan_site_study(site, engine), site_study.Asked(),
@@ -78,14 +78,15 @@ def events_text(counts: Mobility, asked: known.Choice) -> str:
     return f"{name}: " + (results.lengths(counts, counts.chosen) if counts.in_range else "; ".join(counts.outside))
 
 
-def road_text(counts: Mobility, met: fall_path.AtRoad, name: str) -> str:
+def road_text(way: known.Way, name: str) -> str:
     """Which share of known events reaches and passes the road; name: of one of several."""
+    met = way.at
     if met.behind:
         return (f"the road{name and f' {name}'} lies behind the crown or as high, {metres(met.beside)} from the fall "
                 "path, where no known event goes")
     where = "first met" if met.met else f"which the fall path passes {metres(met.beside)} beside,"
-    return (f"the road{name and f' {name}'}, {where} after {metres(met.length)}: "
-            f"{results.describe_road_reach(counts, met)}")
+    return (f"the road{name and f' {name}'}, {where} after {metres(met.length)}"
+            f"{results.describe_way(way)}: {results.describe_road_reach(way)}")
 
 
 def terrain_ends(counts: Mobility, raster: Raster) -> Optional[str]:

@@ -11,7 +11,7 @@ from typing import Any, Mapping, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from ..deposits import deposit
-from ..mobility import fall_path, known
+from ..mobility import known
 from ..mobility.known import Mobility
 from ..mobility.run_length import ON_PATH
 from ..statistics import entries
@@ -155,10 +155,11 @@ def compute_events_at_road(among: known.Known, road: Any) -> Optional[EventsAtRo
     counts, median = mobilities.decides, mobilities.strict and mobilities.strict.length_at(0.5)
     if mobilities.strict and median is None:
         median = float(counts.path.length[-1])
-    at = fall_path.first_at_road(among.mass, counts.path, road, counts.width)
+    at, events, _ = known.way_to_road(among.mass, mobilities, road)
     if at.behind:
         return EventsAtRoad(median, at.length, at.passed, (0.0, 0.0), (0.0, 0.0), at.beside)
-    return EventsAtRoad(median, at.length, at.passed, counts.shares(at.length), counts.shares(at.passed))
+    shares = events.decides.shares
+    return EventsAtRoad(median, at.length, at.passed, shares(at.length), shares(at.passed))
 
 
 def longest(rows: Sequence[Finished]) -> Optional[float]:
