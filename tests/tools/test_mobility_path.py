@@ -360,18 +360,18 @@ def test_a_strip_goes_on_where_the_path_has_left_the_terrain():
     assert min(shares) > 0.75
 
 
-@pytest.mark.parametrize("near", [300, 1000])
-def test_the_smaller_of_two_bodies_comes_to_a_road(near):
+@pytest.mark.parametrize("near, wide", [(300, 60), (1000, 60), (1000, 15)])
+def test_the_smaller_of_two_bodies_comes_to_a_road(near, wide):
     """The fall path of the larger stays away from it; of either the road counts that to which most events come."""
     ground, x, y = terrain(lambda x, y: 1000 - 0.5 * x)
-    large, small = (3.0 * ((abs(x - at) < 50) & (abs(y - middle) < wide))
-                    for at, middle, wide in ((300, 250, 100), (700, near, 60)))
+    large, small = (3.0 * ((abs(x - at) < 50) & (abs(y - middle) < half))
+                    for at, middle, half in ((300, 250, 100), (700, near, wide)))
     mass = body.of_arrays(ground, large + small, "two")
     lane = LineString([(900, near - 100), (900, near + 100)]).buffer(8)
     way, shares, along = to_road(mass, lane)
     assert not way.own and way.at.met and way.at.length == pytest.approx(242, abs=20)
     alone = to_road(body.of_arrays(ground, small, "small"), lane)
-    assert min(shares) >= min(alone[1]) > 0.7       # of the volume of both
+    assert min(shares) >= min(alone[1]) > 0.6       # of the volume of both
     events = how_far.compute_events_at_road(known_events.Known(
         known_events.compute_known_mobility(mass, known_events.choice()), "", mass), lane)
     assert (events.near, events.reached) == (way.at.length, shares)
