@@ -503,6 +503,21 @@ def test_a_motion_in_another_order_or_unit(slope, head, rule):
         motion_file.read_motion("m.txt")
 
 
+@pytest.mark.parametrize("turned, wrong", [("", False), ("--azimuth 90", False), ("--azimuth 135", True),
+                                           ("--azimuth 0", True)])
+def test_a_motion_along_other_axes_is_not_one_of_a_terrain(slope, turned, wrong):
+    """Sites and bodies have x towards the east; a deck of its own may have others."""
+    for name, values, direction in (("a.EW", EW, "E-W"), ("a.NS", NS, "N-S")):
+        knet(Path(name), values, direction)
+    assert slope(f"a.EW a.NS {turned} -o motion.txt")[0] == 0
+    if not wrong:
+        assert len(motion_file.read_motion("motion.txt")) == len(T)
+        return
+    with pytest.raises(SlopeError, match="must have the axes of a terrain, x towards the east .*, got x axis towards "
+                       + turned.split()[1]):
+        motion_file.read_motion("motion.txt")
+
+
 @pytest.mark.parametrize("head, unit, option", [
     ("time,EW (gal),NS (gal),UD (gal)", GAL, ""), ("t;e [g];n [g];up [g]", G, ""),
     ("time\tew\tns\tud", 1.0, "--unit m/s2"), ("time,E-W (cm/s^2),N-S (cm/s^2),U-D (cm/s^2)", GAL, ""),

@@ -10,6 +10,8 @@ from ..errors import SlopeError
 from .quake_records import MOST
 
 NAMES = re.compile(r"\b(?:a(?:cc)?_?([xyz])|([xyz])|t|time)\b", re.IGNORECASE)
+AXIS = re.compile(r"x axis towards ([-+.\deE]+) degrees")        # as slope quake writes it
+EAST = 90.0             # compass bearing of a terrain's x axis
 UNITS = re.compile(r"[(\[]([^)\]]*)[)\]]")
 
 
@@ -51,7 +53,12 @@ def read_motion(path) -> np.ndarray:
 
 
 def check_head(comment: str, where: str) -> None:
-    """Raise SlopeError if a comment names the columns, and they are in another order or other units."""
+    """Raise SlopeError if a comment names the columns, and they are in another order or other units; or if it says
+    that the x axis is not that of terrains."""
+    axis = AXIS.search(comment)
+    if axis and heads.parse_cell(axis[1]) != EAST:
+        raise SlopeError(where, f"must have the axes of a terrain, x towards the east (slope quake --azimuth {EAST:g}, "
+                         "its default)", axis[0])
     names = [(one[1] or one[2] or "t").lower() for one in NAMES.finditer(comment)]
     if sorted(names) != ["t", "x", "y", "z"]:
         return
