@@ -403,6 +403,13 @@ def test_a_raster_without_a_crs_is_taken_to_be_in_that_of_the_terrain(slope, her
     assert err.startswith("slope calibrate: warning: mapped.tif has no CRS: taken to be in that of the terrain")
 
 
+def test_a_mapped_deposit_that_goes_on_beside_the_terrain_is_refused(slope, here):
+    """All runs would seem to go as far as it: its far end is not on their grid."""
+    Path("outline.csv").write_text("-6,6\n26,6\n26,18\n-6,18\n")
+    status, _, err = slope(f"calibrate case/in.tiny --observed outline.csv --local {WORDS} --runs 8 -o out --dry-run")
+    assert status == 2 and "outline.csv: must lie on the terrain, but for 1%" in err and "got 0.19 beside it" in err
+
+
 def test_all_runs_failed_is_one_line(slope, here):
     Path("case/in.tiny").write_text("nonsense\n" + Path("case/in.tiny").read_text())
     status, _, err = slope(f"calibrate case/in.tiny --front 14 {WORDS} --runs 7 -o out")

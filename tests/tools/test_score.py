@@ -242,6 +242,25 @@ def test_shares_within(scored):
     assert out["quantiles"][0]["observed"] > 100
 
 
+@pytest.mark.parametrize("outline", [True, False])
+def test_what_lies_beside_the_grid_counts_in_the_shares(slope, scored, outline):
+    """Of a map of 200 m, of which the grid has 150; and of a run that lost 2 % and 6 % of its mass."""
+    bar = square(west=0, east=200, south=47.5, north=50, size=(40, 80))
+    write_asc("mapped.asc", bar, 2.5)
+    for lost, far in ((0.0, 118.75), (0.02, None), (0.06, None)):
+        there = float(square(west=0, east=120, south=47.5, north=50).sum()) * 2.5 ** 2
+        write_run(square(west=0, east=120, south=47.5, north=50), 0.0, 2.5, travel={"top": [0.0, 48.75, 26.0]},
+                  volume={"released": there / (1 - lost), "on_grid": there, "off_grid": lost * there / (1 - lost),
+                          "lost": 0.0, "residual": 0.0})
+        *_, most = several = scored(box(0, 47.5, 200, 50) if outline else "mapped.asc")["runout"]["quantiles"]
+        assert [one["observed"] for one in several] == pytest.approx([0.5 * 200, 0.9 * 200, 0.95 * 200, 0.99 * 200],
+                                                                     abs=2.5)
+        assert most["simulated"] == far and (most["difference"] is None) == (far is None)
+        assert (several[2]["simulated"] is None) == (lost > 0.05)
+    assert "simulated beyond the grid, mapped within 19" in slope(
+        "run --observed mapped.asc --local --overwrite -o out")[1]
+
+
 # --- files, bad input ---
 
 @pytest.mark.drawn

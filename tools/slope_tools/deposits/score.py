@@ -3,6 +3,7 @@ import math
 from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
+from affine import Affine
 from scipy import ndimage
 
 from .. import disk, geometry
@@ -17,18 +18,21 @@ from .travel_shares import PARTS
 from .volume_files import format_csv_number
 
 THRESHOLD = 0.1   # m
+MOST_CELLS = 1e6  # beside the grid
 FULL = 1e-9       # a smaller share of a cell, or of the largest thickness, is rounding
 CORNERS = (0, 0), (0, 1), (1, 0), (1, 1)    # of a cell, columns and rows
 
 
 class Observed(NamedTuple):
-    """The mapped deposit on the run's grid: share of each cell; thickness (m, mean of the cell) or None."""
+    """The mapped deposit on the run's grid: share of each cell; thickness (m, mean of the cell) or None; beside: what
+    lies outside of the grid, rows of local x, y and area (m2) or, of a raster, volume (m3)."""
     share: np.ndarray
     thickness: Optional[np.ndarray]
     points: np.ndarray      # local x, y of the corners of its outline: its farthest point is one of them
     polygon: object         # shapely, local metres; None for a raster
     outside: float          # area outside of the run's grid, m2
     volume_outside: float   # m3
+    beside: np.ndarray = np.zeros((0, 3))
 
 
 # --- the mapped deposit ---
@@ -49,7 +53,21 @@ def from_polygon(polygon, raster):
     share = geometry.shares_of_cells(inside, raster)
     share = np.clip(np.where(share > FULL, share, 0), 0, 1)
     points = np.concatenate([np.asarray(part.exterior.coords)[:, :2] for part in geometry.polygons_of(polygon)])
-    return Observed(share, None, points, polygon, max(0, polygon.area - inside.area), 0.0)
+    return Observed(share, None, points, polygon, max(0, polygon.area - inside.area), 0.0,
+                    spread_over_cells(geometry.as_multi(polygon.difference(grid)), raster.transform.a))
+
+
+def spread_over_cells(polygon, cell):
+    """x, y and area (m2) of what a polygon covers of cells beside the grid."""
+    if polygon.is_empty:
+        return np.zeros((0, 3))
+    xlo, ylo, xhi, yhi = polygon.bounds
+    side = max(cell, math.sqrt((xhi - xlo) * (yhi - ylo) / MOST_CELLS))
+    transform = Affine(side, 0, xlo, 0, -side, yhi)
+    cells = np.zeros((math.ceil((yhi - ylo) / side), math.ceil((xhi - xlo) / side)))
+    share = geometry.shares_of_cells(polygon, Raster(cells, transform, None))
+    row, column = np.nonzero(share > FULL)
+    return np.column_stack([*(transform @ (column + 0.5, row + 0.5)), share[row, column] * side ** 2])
 
 
 def from_raster(path, mapped, raster, threshold):
@@ -87,8 +105,13 @@ def from_raster(path, mapped, raster, threshold):
     points = corners(there, thick)
     outside = thick.sum() * area - share.sum() * cell
     volume_outside = thickness.sum() * area - mean.sum() * cell
-    return Observed(share, mean, points, None, *(value if value > 1e-9 * total * area else 0.0 for value, total in
-                                                 ((outside, thick.sum()), (volume_outside, thickness.sum()))))
+    row, column = np.nonzero(thickness)
+    beside_ = np.column_stack([*(there @ (column + 0.5, row + 0.5)), thickness[row, column] * area])
+    xlo, ylo, xhi, yhi = extent(raster)
+    beside_ = beside_[(beside_[:, 0] < xlo) | (beside_[:, 0] > xhi) | (beside_[:, 1] < ylo) | (beside_[:, 1] > yhi)]
+    outside, volume_outside = (value if value > 1e-9 * total * area else 0.0 for value, total in
+                               ((outside, thick.sum()), (volume_outside, thickness.sum())))
+    return Observed(share, mean, points, None, outside, volume_outside, beside_)
 
 
 def average_cells(values, x, y, shape):
@@ -161,17 +184,23 @@ def compare_runout(run_, simulated, observed):
 def compare_quantiles(run_, simulated, observed, place):
     """Distances (m) of cell centres from a place that shares of both deposits stay within.
 
-    Shares of the volume where both have a thickness; of the area where the mapped deposit is an outline.
+    Shares of the volume where both have a thickness; of the area where the mapped deposit is an outline. What left the
+    run's grid went farther, and counts as if it lay as thick as the rest; None: a share lies there.
     """
     ours, theirs = (simulated, observed.share) if observed.thickness is None else (run_.raster.z, observed.thickness)
     rows, columns = np.indices(ours.shape)
     x, y = run_.raster.transform @ (columns + 0.5, rows + 0.5)
     distance = np.hypot(x - place[0], y - place[1])
-    found = []
+    volume = run_.summary["volume"]
+    lost = float(ours.sum()) * max(0.0, volume["released"] - volume["on_grid"]) / max(volume["on_grid"], FULL)
+    mapped = (np.append(distance[theirs > 0], np.hypot(*(observed.beside[:, :2] - place).T)),
+              np.append(theirs[theirs > 0], observed.beside[:, 2] / run_.cell ** 2))
+    quantiles = []
     for share in PARTS:
-        near, far = (round(within(distance[of > 0], of[of > 0], share), 9) for of in (ours, theirs))
-        found.append({"share": share, "simulated": near, "observed": far, "difference": round(near - far, 9)})
-    return found
+        near, far = within(distance[ours > 0], ours[ours > 0], share, lost), within(*mapped, share)
+        near, far, less = (round(value, 9) if math.isfinite(value) else None for value in (near, far, near - far))
+        quantiles.append({"share": share, "simulated": near, "observed": far, "difference": less})
+    return quantiles
 
 
 class Connected(NamedTuple):

@@ -70,7 +70,10 @@ def describe_score(summary, folder):
                      f"{part['distance']:.1f} m, {part['difference']:+.1f} m")
     if out.get("quantiles"):
         most = out["quantiles"][-1]
-        lines.append(f"{100 * most['share']:g} % of the {out['quantiles_of']}: within {most['simulated']:.1f} m "
+        which = f"{100 * most['share']:g} % of the {out['quantiles_of']}"
+        lines.append(f"{which}: simulated beyond the grid, mapped within {most['observed']:.1f} m"
+                     if most["simulated"] is None else
+                     f"{which}: within {most['simulated']:.1f} m "
                      f"simulated, {most['observed']:.1f} m mapped: {most['difference']:+.1f} m")
     if "volume" in summary:
         volume = summary["volume"]

@@ -21,6 +21,7 @@ from ..survey import rasters, vectors
 from ..tables.rows import Finished
 
 ZONES = 6
+BESIDE = 0.01           # of a mapped deposit, that may lie beside the terrain
 SHARES = {True: (0.5, 0.9, 0.99), False: (0.99,)}      # of an outline, of a raster
 KINDS = ("observed", "front", "area", "volume")     # what can be observed, as the options call it
 # what is compared with a front: name, column of the table of `slope study`
@@ -80,7 +81,14 @@ class Wanted:
     def check_place(self, terrain: Path, warn: Callable[[str], None]) -> None:
         """Raise SlopeError before the first run if the mapped deposit lies elsewhere, or in another CRS."""
         if self.observed is not None:
-            score.read_observed(self.observed, rasters.read_asc_local(terrain), self.threshold, self.local, warn)
+            ground = rasters.read_asc_local(terrain)
+            mapped = score.read_observed(self.observed, ground, self.threshold, self.local, warn)
+            beside = float(mapped.beside[:, 2].sum())
+            there = float((mapped.share if mapped.thickness is None else mapped.thickness).sum())
+            share = beside / (beside + there * float(ground.transform.a) ** 2)
+            if share > BESIDE:      # where no run leaves anything: it would look as if the mass had stopped before
+                raise SlopeError(self.observed, f"must lie on the terrain, but for {BESIDE:.0%}: where it goes on, no "
+                                 "run shows a deposit; use a larger terrain", f"{share:.2g} beside it")
 
 
 class Observations:
