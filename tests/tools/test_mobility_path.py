@@ -350,6 +350,12 @@ def test_the_share_at_a_road_is_of_the_path_that_leads_there():
         assert way.at.met and not way.own and max(along) < 0.5 and min(shares) > 0.7
 
 
+def test_a_body_of_one_row_of_cells_has_no_strips(recwarn):
+    ground, x, y = terrain(lambda x, y: 1000 - 0.5 * x)
+    mass = body.of_arrays(ground, 3.0 * ((abs(x - 300) < 100) & (abs(y - 605) < 5)), "row")
+    assert to_road(mass, box(700, 0, 720, 1190))[0].own and not recwarn.list
+
+
 def test_a_strip_goes_on_where_the_path_has_left_the_terrain():
     """The middle falls off a terrain that has a hole below it, the flank comes to a road beyond."""
     ground, x, y = terrain(lambda x, y: 1000 - 0.5 * x)

@@ -92,9 +92,11 @@ def trace_strips(body: Body, width: float, longest: float) -> Iterator[FallPath]
     place = np.column_stack(body.raster.transform @ (np.array(cells[::-1]) + 0.5))
     across = (place - centre) @ (-downhill[1], downhill[0])
     strips = round(np.ptp(across) / width)
+    if strips < 2:
+        return
     mine = np.minimum((across - across.min()) / np.ptp(across) * strips, strips - 1).astype(int)
     ground = Smooth(body)
-    for strip in np.unique(mine) if strips > 1 else ():
+    for strip in np.unique(mine):
         own, ground.z = mine == strip, ground.unfilled.copy()
         middle = np.average(place[own], axis=0, weights=body.main[cells][own])
         yield trace_from(body, ground, middle, downhill, longest)
