@@ -203,6 +203,17 @@ def table(path="out/fragility.csv"):
     return {name: np.array(rows).T for name, rows in found.items()}
 
 
+def test_a_motion_across_the_direction_of_sliding_is_named(slips, capsys):
+    """Of one component, or of a record whose other one is missing: such a body is not shaken, and never fails."""
+    rows = np.loadtxt("motion.txt")
+    np.savetxt("across.txt", np.column_stack([rows[:, 0], 0 * rows[:, 1], rows[:, 1:3]])[:, [0, 1, 2, 3]])
+    words = f"slips {SOIL} --peaks 50:1500:50 --sample 512 --record"
+    assert "direction of sliding" not in ran(capsys, f"{words} motion.txt -o out")[2]
+    status, _, err = ran(capsys, f"{words} motion.txt --record across.txt -o across")
+    assert status == 0 and err.count("across.txt: along the direction of sliding of body") == 2, err
+    assert "1, 270 degrees, its largest acceleration is 0 % of its peak: it hardly shakes the body" in err
+
+
 @pytest.mark.drawn
 def test_two_bodies_two_records_and_a_hazard(slips, capsys):
     status, out, err = ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --record motion.txt "

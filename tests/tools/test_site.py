@@ -521,6 +521,17 @@ def test_an_earthquake_sets_the_body_off(gis):
     assert found.rest > 0 and found.balls > 40
 
 
+@pytest.mark.parametrize("angle, across", [(0, False), (45, False), (75, True), (90, True)])
+def test_a_motion_across_the_slope_is_named(told, angle, across):
+    """Which falls to the west: of a record with the other component alone."""
+    t, way = np.arange(0, 4, 0.02), np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+    rows = np.column_stack([t, 4 * np.sin(9 * t)[:, None] * way, 0 * t])
+    np.savetxt("motion.txt", rows)
+    status, _, err = told("--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--motion", "motion.txt",
+                          "-o", "mine")
+    assert status == 0 and ("motion.txt: along the direction of sliding, 270 degrees" in err) == across, err
+
+
 def test_layers_in_other_systems_lie_where_they_belong(done):
     """The release polygon is in degrees, the road in metres: both at the local metres that they were drawn in."""
     mine = done[0] / "mine"

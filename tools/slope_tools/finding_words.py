@@ -224,6 +224,8 @@ WORDS: Dict[str, Union[str, Words]] = {
                  "by {percent:+.0f} % without friction",
     "pseudo-static": "pseudo-static: a body that is at F < 1 for an instant with {factor:g} times the peak counts as "
                      "failed, which is {judged}",
+    "motion across": "{file}: along the direction of sliding{body}, {bearing:.0f} degrees, its largest acceleration is "
+                     "{percent:.0f} % of its peak: it hardly shakes the body; are both horizontal components in it?",
     "one record": "one record: how much records differ is not seen, beta_r is 0",
     "at rest": "{which}: {percent:.2g} % of the strengths fail without an earthquake{makes}: if the slope stands, they "
                "are not its own; raise the lower bounds of the strengths",

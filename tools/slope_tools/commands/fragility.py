@@ -68,8 +68,9 @@ def run_fragility(args: Request) -> None:
     hazard = hazard_file.read_seismic_hazard(args.hazard) if args.hazard else None
     disk.check_folder(args.output, files.FILES, [args.slips], args.overwrite)
     limit = 0.1 if args.displacement is None else args.displacement
+    records = {path: motion_file.read_motion(path) for path in args.record}
     failure: Any = fragility.PseudoStatic(args.pseudo_static) if args.pseudo_static is not None else \
-        fragility.Slide(limit, [motion_file.read_motion(path) for path in args.record], args.vertical)
+        fragility.Slide(limit, [records[path] for path in args.record], args.vertical)
     bodies = bodies_of(args)
     strengths = fragility.strengths_of(soil, math.ceil(args.sample / fragility.REPLICATES), args.seed)
     capacity = fragility.capacities(bodies, strengths, failure)
@@ -85,6 +86,10 @@ def run_fragility(args: Request) -> None:
     warn, kept = findings.warner("fragility")
     for one in find_fragility_warnings(curves, peaks, bodies, args.pseudo_static, len(args.record), hazard):
         warn(one)
+    for body in bodies:
+        for path, rows in records.items():
+            for one in motion_file.find_across(rows, (90.0 - body.direction) % 360.0, path, f" of body {body.name}"):
+                warn(one)
     summary = {"bodies": [{"body": body.name, "volume_m3": body.columns.volume,
                            "base_sha256": disk.sha256(body.base)} for body in bodies],
                "peaks": args.peaks, "peaks_gal": peaks.tolist(),

@@ -7,10 +7,12 @@ import numpy as np
 
 from .. import heads
 from ..errors import SlopeError
+from ..findings import Finding
 from .quake_records import MOST
 
 NAMES = re.compile(r"\b(?:a(?:cc)?_?([xyz])|([xyz])|t|time)\b", re.IGNORECASE)
 AXIS = re.compile(r"x axis towards ([-+.\deE]+) degrees")        # as slope quake writes it
+ACROSS = 0.5            # of the peak: less along the direction of sliding is that of another component
 EAST = 90.0             # compass bearing of a terrain's x axis
 UNITS = re.compile(r"[(\[]([^)\]]*)[)\]]")
 
@@ -67,6 +69,19 @@ def check_head(comment: str, where: str) -> None:
     if names != ["t", "x", "y", "z"] or any(heads.acceleration(unit) != 1.0 for unit in others) or any(
             heads.TIMES.get(unit, 1.0) != 1.0 for unit in units):
         raise SlopeError(where, "columns must be t ax ay az in s and m/s2", comment.strip()[:60])
+
+
+def share_along(values: np.ndarray, bearing: float) -> float:
+    """The largest acceleration along a compass bearing (degrees), either way, over the peak of a motion's rows."""
+    east, north = np.sin(np.radians(bearing)), np.cos(np.radians(bearing))
+    return float(np.abs(values[:, 1] * east + values[:, 2] * north).max()) / peak(values)
+
+
+def find_across(values: np.ndarray, bearing: float, file: object, body: str = "") -> List[Finding]:
+    """That a motion, as one of a single component, hardly shakes what slides along a compass bearing (degrees)."""
+    share = share_along(values, bearing)
+    return [Finding("motion across", {"file": str(file), "body": body, "bearing": bearing, "percent": 100 * share})] * (
+        share < ACROSS)
 
 
 def peak(values: np.ndarray) -> float:

@@ -19,6 +19,7 @@ from ..case import decks, settings
 from ..digits import rounded
 from ..errors import SlopeError
 from ..findings import Finding, keeper
+from ..quakes import motion_file
 from ..releases import release, release_files, release_toe
 from ..survey import local_terrain, polygons, rasters
 from ..survey.rasters import Raster, crs_name
@@ -150,6 +151,8 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
     say_size(choices, size, released, machine, tell)
     for doubt in (*site_warnings.of_resistance(choices), *site_warnings.of_zones(layers.zones),
                   *site_warnings.site_warnings(released.measures, size, trial),
+                  *(motion_file.find_across(layers.motion.values, released.measures.bearing, given.motion.file)
+                    if layers.motion else ()),
                   *site_warnings.of_cells(released.area.z - released.slip, released.area.cell, surveyed),
                   *(one for name, road in layers.roads.items() for one in site_warnings.check_road_resolution(
                     road, choices.road.width, size.diameter, max(released.area.cell, choices.model.cell or 0.0),

@@ -59,6 +59,7 @@ class Motion(NamedTuple):
     file: str
     length: float           # s
     peak: float             # largest horizontal acceleration, m/s2
+    values: np.ndarray      # rows t ax ay az
 
 
 def unused(stem: str, taken: Set[str]) -> str:
@@ -213,7 +214,7 @@ def motion(path: str, folder: Path) -> Motion:
     """Copy the motion of the ground, lines "t ax ay az" in s and m/s2, into a folder."""
     values = motion_file.read_motion(path)
     copy(path, folder / MOTION)
-    return Motion(MOTION, float(values[-1, 0]), motion_file.peak(values))
+    return Motion(MOTION, float(values[-1, 0]), motion_file.peak(values), values)
 
 
 def copy(source: str, target: Path) -> None:
