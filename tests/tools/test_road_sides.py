@@ -132,6 +132,24 @@ def test_before_on_and_past_are_what_was_released(name):
                                                                                                         rel=1e-9)
 
 
+def test_a_second_body_comes_from_beyond_the_road():
+    """What left of it before it came there had the road ahead, as what left of the larger one had on its side."""
+    released = RELEASED.copy()
+    released[28:32, 70:74] = True       # x 700 to 740, y 280 to 320
+    sides = road_sides.divide(geometry.as_multi(box(400, 0, 412, 600)), None, RASTER, released)
+    starts = {"larger": (100, 300), "smaller": (720, 300)}
+    for name, place, part, ahead in (
+            ("larger", (300, 0), "before", True), ("larger", (500, 0), "past", False),
+            ("smaller", (600, 0), "before", True), ("smaller", (300, 0), "past", False),
+            ("smaller", (800, 300), "before", False), ("larger", (406, 0), "on", True),
+            ("smaller", (406, 0), "on", True)):
+        about = passed.of_mass(ground_of(np.zeros((ROWS, COLUMNS)), lost=2.0), sides, balls((*place, *starts[name])))
+        told = about["left"]
+        assert [told[one] for one in ("before", "on", "past")] == [2.0 * (one == part) for one in
+                                                                  ("before", "on", "past")], (name, place)
+        assert told["road_ahead"] == 2.0 * ahead, (name, place)
+
+
 def test_the_numbers_of_a_road_that_ends_inside():
     """Ten cells before it, one on it, two across it, three near its foot, seen past its end; balls left everywhere."""
     thickness = np.zeros((ROWS, COLUMNS))

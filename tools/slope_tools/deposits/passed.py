@@ -21,6 +21,7 @@ AWAY = "away from it"        # before the road, which is behind
 CLOSE = "close to it"        # beyond the road, where what lies may have to be removed
 COUNT = BEFORE, ON, CLOSE    # what left there might lie on the road, or keep there what does
 PARTS = BEFORE, ON, PAST
+SWAPPED = {BEFORE: PAST, PAST: BEFORE}
 HIGHEST = 1e5                # m, no ground is as high: a road whose height nobody knows counts as so far below
 ROUNDING = 1e-9              # of the mass, of a cell: less is what areas and sums round off
 
@@ -113,9 +114,12 @@ def reach_of_heap(left: Gone, past: np.ndarray, ground: Ground, road: BaseGeomet
 def sort_by_side(left: Gone, sides: Sides, ground: Ground, rise: float) -> Left:
     """rise: of the cut, m per m."""
     part = sides.of_places(left.place)
+    # of a body that begins beyond the road, of several: it comes from there
+    across = sides.of_places(left.start) == PAST
+    part = np.array([SWAPPED.get(one, one) if other else one for one, other in zip(part, across)], object)
     road, before = prep(sides.road), sides.before
     points = [Point(place) for place in left.place]
-    ahead = sides.ahead_of(left.start, left.place, part)
+    ahead = sides.ahead_of(left.start, left.place, part) & ~(across & (part == PAST))
     # of a frame of dumps: it may have left before the road
     near = np.array([one != BEFORE and within > 0 and before.distance(point) <= within
                      for one, within, point in zip(part, left.within, points)], bool)
