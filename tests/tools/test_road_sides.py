@@ -145,8 +145,7 @@ def test_a_second_body_comes_from_beyond_the_road():
             ("smaller", (406, 0), "on", True)):
         about = passed.of_mass(ground_of(np.zeros((ROWS, COLUMNS)), lost=2.0), sides, balls((*place, *starts[name])))
         told = about["left"]
-        assert [told[one] for one in ("before", "on", "past")] == [2.0 * (one == part) for one in
-                                                                  ("before", "on", "past")], (name, place)
+        assert [told[one] for one in passed.PARTS] == [2.0 * (one == part) for one in passed.PARTS], (name, place)
         assert told["road_ahead"] == 2.0 * ahead, (name, place)
 
 
