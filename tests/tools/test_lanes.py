@@ -29,6 +29,7 @@ from slope_tools.deposits.axis import Axis, Span, longest_gap, merged, parts_of_
 from slope_tools.report import road_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics import rounding
+from slope_tools.statistics.entries import Kind
 from slope_tools.survey import rasters, roads
 from slope_tools.survey.rasters import Raster
 from slope_tools.tables import road_runs
@@ -562,12 +563,18 @@ def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here, capsys, 
     data = SimpleNamespace(study=study)
     whole, lane = ([rounding.format_rounded(one, rounding.place_of_digits(one)) for one in found["totals"][key][::2]]
                    for key in ("hours", "remove_lane"))
+    within = "(what 5 and 95 % of the runs stay within)"
     assert road_part.on_first_page(data, numbers, False) == [
         f"A lane of 1.5 m is open after {low} to {high} hours, the whole road after {' to '.join(whole)} hours of one "
-        "loader of 20 m3/h."]
+        f"loader of 20 m3/h {within}."]
+    for kind, text in ((Kind.NUMBER, "640 m3"), (Kind.FLOOR, "at least 640 m3"), (Kind.OPEN, "640 m3 (no bound)")):
+        number = SimpleNamespace(kind=kind, volume_m3=640.0)
+        [cleared] = road_part.on_first_page(SimpleNamespace(study=replace(study, headline=number)), numbers, False)
+        assert cleared.endswith(f"loader of 20 m3/h {within}; {text} take 40.0 hours.")
     for asked, wanted in (({"lane": None},
-                           f"The road is clear after {' to '.join(whole)} hours of one loader of 20 m3/h."),
-                          ({"clearing": None}, f"A lane of 1.5 m is open when {' to '.join(lane)} m3 are removed.")):
+                           f"The road is clear after {' to '.join(whole)} hours of one loader of 20 m3/h {within}."),
+                          ({"clearing": None},
+                           f"A lane of 1.5 m is open when {' to '.join(lane)} m3 are removed {within}.")):
         keys = {"lane": ("remove_lane", "hours_lane"), "clearing": ("hours", "hours_lane")}[[*asked][0]]
         less = replace(study, study=replace(study.study, road={**study.study.road, **asked}), stretches=replace(
             study.stretches, totals={key: value for key, value in found["totals"].items() if key not in keys}))

@@ -9,6 +9,7 @@ from ..sites.site_roads import FOLDER
 from ..studies import road_numbers
 from ..survey.roads import Asked
 from ..tables import ensemble_types, study_types
+from ..tables.answer_words import describe_volume
 from ..tables.road_runs import BODIES
 from .data import Data
 from .ensemble_part import ODDS
@@ -132,4 +133,17 @@ def on_first_page(data: Data, numbers: Numbers, withheld: bool) -> List[str]:
     if "hours" in totals:
         cells.append(f"{'the whole road' if cells else 'The road is clear'} after "
                      f"{span('until clear', 'h', 'hours')} hours")
-    return [f"{', '.join(cells)}{f' of {rate(asked)}' if asked.hours else ''}."] if cells else []
+    if not cells:
+        return []
+    known = "known events" if about.of_known_events else "the runs"
+    return [f"{', '.join(cells)}{f' of {rate(asked)}' if asked.hours else ''} (what 5 and 95 % of {known} stay within)"
+            f"{describe_number_hours(study, asked, numbers)}."]
+
+
+def describe_number_hours(study: study_types.Study, asked: Asked, numbers: Numbers) -> str:
+    """What the number of the first page takes, which may be more than that of nearly all runs."""
+    number = study.headline
+    if not (asked.hours and number and number.volume_m3):
+        return ""
+    hours = numbers("until clear, the number of the first page", "h", number.volume_m3 * asked.hours)
+    return f"; {describe_volume(number.kind, number.volume_m3, 'm3')} take {hours} hours"
