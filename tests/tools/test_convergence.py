@@ -53,6 +53,7 @@ SAME, MORE = (10.0, 11.0, 10.5), (13.0, 14.0, 13.5)
     ((SAME, SAME), 32.0, False),                # one halving
     ((MORE, SAME, SAME, SAME), 64.0, True),     # the last two count
     ((SAME, SAME, SAME, MORE), 64.0, False),    # a plateau is no convergence
+    (((1000.0, 1400.0), (1300.0, 1900.0), (2000.0, 2600.0)), 32.0, False),      # 1.9 times as much, chance explains it
     (((10.0,), (10.0,), (10.0,)), 32.0, False)])        # chance is not known
 def test_resolved_takes_two_halvings_from_eight_balls(values, balls, resolved):
     found = compared(*((2.0 ** (len(values) - 1 - k), one) for k, one in enumerate(values)), balls=balls)

@@ -13,6 +13,7 @@ from .conservative_volume import Combination, Scatter, pooled
 HALVED = 1.9            # ratio of two sizes from which on one is half of the other, or less
 AGREEING = 2            # halvings in a row that change no more than chance resolve a quantity
 BALLS = 8.0             # of thickness, that the first of them must have
+TELLS = 0.25            # of the mean: where chance explains more, runs do not show that nothing changes
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,11 @@ class Halving:
         """False where chance is not known."""
         return self.chance is not None and abs(self.difference) <= self.chance
 
+    @property
+    def tells(self) -> bool:
+        """Whether chance is little enough to show a change."""
+        return self.chance is not None and self.chance <= TELLS * abs(self.fine.mean)
+
 
 @dataclass(frozen=True)
 class Convergence:
@@ -52,9 +58,9 @@ class Convergence:
     def resolved(self) -> bool:
         """Whether AGREEING halvings in a row, the first from BALLS of thickness or more, change no more than chance,
 
-        and no finer one does.
+        which is little, and no finer one does.
         """
-        good = [one.within_chance and one.coarse.balls is not None and one.coarse.balls >= BALLS
+        good = [one.within_chance and one.tells and one.coarse.balls is not None and one.coarse.balls >= BALLS
                 for one in self.halvings]
         return len(good) >= AGREEING and all(good[-AGREEING:])
 
@@ -99,4 +105,4 @@ def describe_convergence(result: Convergence, name: str, what: str, unit: str, n
     if result.resolved:
         return [*sentences, f"{what}: resolved: {AGREEING} halvings change no more than chance"]
     return [*sentences, f"{what}: not resolved: this takes {AGREEING} halvings in a row that change no more than "
-            "chance, " f"from {BALLS:g} balls of thickness on"]
+            f"chance, up to {100 * TELLS:g} % of the mean (more repeats), from {BALLS:g} balls of thickness on"]
