@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from affine import Affine
 from rasterio.features import shapes
 from shapely.geometry import shape
 from shapely.ops import unary_union
@@ -74,6 +75,14 @@ def test_overlap_and_run_out_by_hand(here):
     assert length == pytest.approx(run_length.measure_run_length(run, None).distance, abs=1e-3)
     beyond = mapped.length_of(run, None, score.from_polygon(own.union(own.buffer(1000)), run.raster))
     assert beyond > length + 900        # what lies beside the grid counts
+    z = np.pad(np.where(mask, 1.0, 0.0), 200)
+    z[:, :200][z.shape[0] // 2] = 1.0       # a strip to 200 cells west of the grid
+    west, cell = run.raster.transform.c, run.cell
+    for thick, far in ((1.0, west - 199.5 * cell), (0.004, None)):
+        wide = run.raster._replace(z=np.where(np.arange(z.shape[1]) < 200, thick * z, z),
+                                   transform=run.raster.transform @ Affine.translation(-200, -200))
+        got = mapped.length_of(run, None, score.from_raster("wide.tif", wide, run.raster, 0.1))
+        assert got == pytest.approx(deposit.top(run).x - far if far else length, abs=2 * cell)
     text, = mapped.describe_mapped(about.observed, rows)
     assert re.search(rf"overlap \(Jaccard\) \d\.\d\d to \d\.\d\d, best of {entry['best']}, [+-]\d+ m in run-out", text)
     assert "overlap,beyond_mapped_m" in study_table.tabulate_study({"rolling": ["0", "0.3"], "steps": ["1200"]}, {},

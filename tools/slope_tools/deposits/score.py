@@ -25,7 +25,7 @@ CORNERS = (0, 0), (0, 1), (1, 0), (1, 1)    # of a cell, columns and rows
 
 class Observed(NamedTuple):
     """The mapped deposit on the run's grid: share of each cell; thickness (m, mean of the cell) or None; beside: what
-    lies outside of the grid, rows of local x, y and area (m2) or, of a raster, volume (m3)."""
+    lies outside of the grid, rows of local x, y and area (m2) or, of a raster, volume (m3) and thickness (m)."""
     share: np.ndarray
     thickness: Optional[np.ndarray]
     points: np.ndarray      # local x, y of the corners of its outline: its farthest point is one of them
@@ -106,7 +106,8 @@ def from_raster(path, mapped, raster, threshold):
     outside = thick.sum() * area - share.sum() * cell
     volume_outside = thickness.sum() * area - mean.sum() * cell
     row, column = np.nonzero(thickness)
-    beside_ = np.column_stack([*(there @ (column + 0.5, row + 0.5)), thickness[row, column] * area])
+    beside_ = np.column_stack([*(there @ (column + 0.5, row + 0.5)), thickness[row, column] * area,
+                               thickness[row, column]])
     xlo, ylo, xhi, yhi = extent(raster)
     beside_ = beside_[(beside_[:, 0] < xlo) | (beside_[:, 0] > xhi) | (beside_[:, 1] < ylo) | (beside_[:, 1] > yhi)]
     outside, volume_outside = (value if value > 1e-9 * total * area else 0.0 for value, total in

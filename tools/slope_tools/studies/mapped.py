@@ -1,7 +1,7 @@
 """The runs of a site's study against its mapped deposit, whatever the method: overlap, run-out, volume of each.
 
 The length of the mapped deposit is that of a run, along the fall path to its farthest lobe, by the cells that it
-covers; what of an outline lies beside the run's grid counts by its corners.
+covers; what of an outline lies beside the run's grid counts by its corners, of a raster by its cells.
 """
 import os
 from dataclasses import replace
@@ -22,6 +22,7 @@ from ..tables import study_types
 from ..tables.rows import Failed, Finished, Mapped, Row, finished_of
 
 HALF = 0.5              # of a cell, which an outline covers
+BESIDE = 0.01           # of the volume of a raster on the grid: less beside it counts as stray
 SAME_MASS = 0.1         # of the released volume: a mapped deposit that holds so much less or more is not the same mass
 
 
@@ -79,8 +80,12 @@ def length_of(run_: deposit.Deposit, terrain: Optional[Path], observed: score.Ob
     """Length (m) of a mapped deposit along the fall path of a run's body; straight where it has none."""
     path = run_length.path_of(run_, terrain)
     if observed.thickness is not None:
-        found = run_length.of_deposit(run_._replace(raster=run_.raster._replace(z=observed.thickness)), path)
-        return found and found.distance
+        there = run_length.of_deposit(run_._replace(raster=run_.raster._replace(z=observed.thickness)), path)
+        lengths = [there.distance] if there else []
+        if observed.volume_outside > BESIDE * float(observed.thickness.sum()) * run_.cell ** 2:
+            places = observed.beside[observed.beside[:, 3] > score.THRESHOLD, :2]
+            lengths += run_length.lengths_of(places, path, run_)[0].tolist()
+        return max(lengths, default=None)
     rows, columns = np.nonzero(observed.share >= HALF)
     points = np.column_stack(run_.raster.transform @ np.array([columns + 0.5, rows + 0.5]))
     xlo, ylo, xhi, yhi = extent(run_.raster)
