@@ -52,9 +52,9 @@ def test_lengths_have_the_digits_of_slope_mobility(mine, capsys):  # noqa: F811
 
 
 def test_a_terrain_that_ends_on_a_road_makes_a_floor(mine, monkeypatch):  # noqa: F811
-    met = outlook.fall_path.at_road
+    met = outlook.known.fall_path.at_road
     for add, said in ((0.0, False), (60.0, True)):
-        monkeypatch.setattr(outlook.fall_path, "at_road", lambda *given: (
+        monkeypatch.setattr(outlook.known.fall_path, "at_road", lambda *given: (
             one := met(*given))._replace(passed=one.passed + add))
         found = outlook.describe_outlook(mine)
         assert any("at best a floor" in line and "beyond the terrain" in line for line in found) is said

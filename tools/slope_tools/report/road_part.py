@@ -114,10 +114,10 @@ def draw_road_shares(data: Data, asked: Asked, stretches: study_types.Stretches,
 def on_first_page(data: Data, numbers: Numbers, withheld: bool) -> List[str]:
     """What lane and hours were asked for: a sentence in a list; none where neither was, or the numbers are withheld."""
     study = data.study
-    about = study.stretches if study else None
-    if not study or not about or withheld:
+    stretches = study.stretches if study else None
+    if not study or not stretches or withheld:
         return []
-    asked, totals = Asked.of(study.study.the_road), about.totals
+    asked, totals = Asked.of(study.study.the_road), stretches.totals
 
     def span(what: str, unit: str, key: str) -> str:
         low, _, high = (numbers(what, unit, value) for value in totals[key])
@@ -135,7 +135,7 @@ def on_first_page(data: Data, numbers: Numbers, withheld: bool) -> List[str]:
                      f"{span('until clear', 'h', 'hours')} hours")
     if not cells:
         return []
-    known = "known events" if about.of_known_events else "the runs"
+    known = "known events" if stretches.of_known_events else "the runs"
     return [f"{', '.join(cells)}{f' of {rate(asked)}' if asked.hours else ''} (what 5 and 95 % of {known} stay within)"
             f"{describe_number_hours(study, asked, numbers)}."]
 
