@@ -1,5 +1,5 @@
 #!/bin/bash
-# Builds everything, then runs the tests: those in C++ by ctest, then lint, pages and those in Python by pytest.
+# Builds everything, lint and pages beside it, then runs the tests: those in C++ by ctest, those in Python by pytest.
 #
 #   tests/run.sh             the short run: all tests but those with the mark long
 #   tests/run.sh --all       all tests; it ends with the share of the lines of the tools that they ran, and fails below 85 %
@@ -32,6 +32,11 @@ if [[ $kind != chosen ]] && (($# > most)); then
   exit 2
 fi
 
+if [[ $kind != chosen ]]; then
+  "$top/tools/setup.sh"
+  # beside the build, whose beginning leaves processors free: the tests find what it had nothing to say of
+  JOBS=1 "$top/tests/lint.sh" &>/dev/null &
+fi
 "$top/tools/build.sh"
 built=$SECONDS
 if [[ $kind == chosen ]]; then
@@ -64,17 +69,18 @@ if [[ $kind == changed ]]; then
 fi
 
 failed=0
+ctest --test-dir "$top/build" -j "$jobs" --output-on-failure "${units[@]}" >"$work/ctest.log" &
+ctest=$!
 # in a fresh build: Python compiles the tests and the tools once, not in each of the workers
 if ((${#files[@]})) && [[ ! -d $top/build/tests/pycache ]]; then
-  sh "$top/build/tests/pytest.sh" --collect-only "${files[@]}" >/dev/null &
+  sh "$top/build/tests/pytest.sh" --collect-only "${files[@]}" >/dev/null || true
 fi
-ctest --test-dir "$top/build" -j "$jobs" --output-on-failure "${units[@]}" >"$work/ctest.log" || failed=1
-grep -v " Passed " "$work/ctest.log" | sed '/^ *Start /d' || true
-wait || true
 if ((${#files[@]})); then
   sh "$top/build/tests/pytest.sh" -n "$((jobs + 2))" --dist loadfile --basetemp "$work/pytest" "${mark[@]}" "${files[@]}" |
     tee "$work/pytest.log" || failed=1
 fi
+wait "$ctest" || failed=1
+grep -v " Passed " "$work/ctest.log" | sed '/^ *Start /d' || true
 if ((counted)); then
   "$top/tests/coverage/report.sh" "$floor" || failed=1
 fi

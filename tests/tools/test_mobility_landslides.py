@@ -12,18 +12,18 @@ from test_mobility_path import RADIUS, STEEP, disc, hillside, terrain
 
 from slope_tools.digits import three
 from slope_tools.errors import SlopeError
-from slope_tools.mobility import body, fall_path, known, landslides, lucas, offices, results
+from slope_tools.mobility import body, events, fall_path, known, lucas, offices, results
 from slope_tools.releases import release
 from slope_tools.survey import rasters
 
 EMBANKMENT = TOP / "inputs" / "20_embankment"
-ROW = landslides.choose_landslide_row()
+ROW = events.choose_landslide_row()
 
 
 def test_the_rows():
-    rows = landslides.read_landslides()
+    rows = events.read_landslides()
     assert len(rows) == 13 and sum(row.events for row in rows if row.path == "all") == 204
-    assert {row.type for row in rows} == set(landslides.TYPES) and {row.path for row in rows} >= {"all", "channelized"}
+    assert {row.type for row in rows} == set(events.TYPES) and {row.path for row in rows} >= {"all", "channelized"}
     assert ROW[:7] == ("translational_slides", "all", 69, -0.159, -0.068, 0.435, 0.67)
 
 
@@ -31,20 +31,20 @@ def test_the_rows():
     ("rockfalls", ("rockfalls", "all")), ("debris flows:Channelised", ("debris_flows", "channelized")),
     ("trans:unob", ("translational_slides", "unobstructed")), ("earth", ("earthflows_and_mudslides", "all"))])
 def test_a_name(text, found):
-    assert landslides.choose_landslide_row(text)[:2] == found
+    assert events.choose_landslide_row(text)[:2] == found
 
 
 @pytest.mark.parametrize("text", ["", "slides", "rock:", "rockfalls:channelized", "earth:obstructed", "rocks:all:x"])
 def test_no_name(text):
     with pytest.raises(SlopeError, match="--known: must be"):
-        landslides.choose_landslide_row(text)
+        events.choose_landslide_row(text)
 
 
 @pytest.mark.parametrize("text, half, twentieth", [
     ("translational", 108, 295), ("translational:unobstructed", 119, 322)])
 def test_the_embankment(text, half, twentieth):
     """49,000 m3 that fall 36 m, by hand."""
-    row = landslides.choose_landslide_row(text)
+    row = events.choose_landslide_row(text)
     assert row.farthest(0.5, 0.049, 36) == pytest.approx(half, abs=0.5)
     assert row.farthest(0.95, 0.049, 36) == pytest.approx(twentieth, abs=0.5)
     for share in (0.01, 0.05, 0.3, 0.5, 0.8, 0.99):
@@ -54,9 +54,9 @@ def test_the_embankment(text, half, twentieth):
 def test_both_scatters():
     """The one of the limit and the one of R2; the larger probability counts, on either side of the median."""
     assert ROW.deviations == pytest.approx((0.0954, 0.2644), abs=1e-4)
-    assert all(row.deviations[0] < row.deviations[1] for row in landslides.read_landslides())
-    assert landslides.choose_landslide_row("rockfalls:ob").deviations == pytest.approx((0.0626, 0.0824),
-                                                                                       abs=1e-4)     # R2's is larger
+    assert all(row.deviations[0] < row.deviations[1] for row in events.read_landslides())
+    assert events.choose_landslide_row("rockfalls:ob").deviations == pytest.approx(
+        (0.0626, 0.0824), abs=1e-4)     # R2's is larger
     length, volume, fall = np.array([60.0, 300.0]), 0.049, 36.0
     for kind, deviation in (("landslides_narrow", 0.095446), ("landslides_wide", 0.264438)):
         scores = (np.log10(fall / length) + 0.159 + 0.068 * math.log10(49000)) / deviation

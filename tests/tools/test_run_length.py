@@ -215,7 +215,7 @@ def test_the_table_for_offices_is_found_by_hand_from_the_rasters(here):
     write_asc("run.max_speed.asc", np.where(thickness > 0, 20 - 0.02 * x, 0), CELL)
     road = Polygon([(480, 5), (520, 5), (560, 595), (520, 595)])
     run = deposits.read_deposit("run", None, lambda text: None)
-    before, slip = deposits.find_ground_before(run.raster, run.base, here / "terrain.asc")
+    before, slip = body.find_ground_before(run.raster, run.base, here / "terrain.asc")
     mass, way = body.of_arrays(run.raster._replace(z=before), slip, "a"), run_length.path_of(run, here / "terrain.asc")
     numbers = Numbers()
     run_part.over_height(offices.slope(mass, way), offices.measure_office_distances(run, way), numbers)

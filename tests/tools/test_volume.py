@@ -299,8 +299,29 @@ def test_strips_and_bounds_change_nothing(monkeypatch, seed, rise):
     assert plain.steep > 0.3 * plain.total(plain.beside) or abs(rise) < 1  # whole cells are taken on steep ground
 
 
-def test_against_a_sum_over_points():
-    """The definition, point by point: surface - max(ground, cut), in metres, and all edges looked at."""
+@pytest.mark.parametrize("sides", [(-1, 1), (1,)])
+@pytest.mark.parametrize("slope_", [1.0, 2.0, 11.4])
+def test_cells_that_hold_the_foot_of_a_cutting_do_not_raise_its_cut(slope_, sides):
+    """6 m high beside a road of 8 m that falls to one side, in cells of 2.5 m: what lies there, by the profile."""
+    def ground(x):
+        return 0.03 * x + sum(np.clip((side * x - 4) * slope_, 0, 6) for side in sides)
+
+    far = np.linspace(4, 60, 200001)
+    true = sum(np.trapz(np.clip(ground(side * far) + 1.5 - ground(side * 4.0) - (far - 4) * TAN30, 0, 1.5), far)
+               for side in (-1, 1))
+    found = []
+    for shift in np.arange(0, 2.5, 0.25):
+        z = np.tile(ground(2.5 * (np.arange(60) + 0.5) - 75 + shift), (8, 1))
+        road = box(*(28.4 - shift / 2.5, 0), *(31.6 - shift / 2.5, 8))
+        got = cut.removed(np.full(z.shape, 1.5), cut.Ground(z), [road], TAN30 * 2.5, cut.one_cell(z), 4, silent=True)
+        found.append(got.mesh_beside.sum() * 2.5 ** 2 / 20 / true)
+    assert 0.97 < min(found) and max(found) < 1.03, found
+
+
+def test_against_a_sum_over_points(monkeypatch):
+    """The definition, point by point: surface - max(ground, cut), in metres, and all edges looked at; but for what the
+    road's surface says of its edge."""
+    monkeypatch.setattr(cut, "DEPTHS", ())
     thickness, base, road = rough(5, 30, 30)
     road = translate(road, -30, -20).intersection(box(0, 0, 60, 60))
     run = plain_deposit(thickness, base, 2.0)

@@ -2,14 +2,14 @@
 from dataclasses import dataclass
 from typing import Any, List, Optional
 
-from ..mobility import known, landslides
+from ..mobility import events, known
 from ..mobility.known import CONFINED
 from ..options import option, several
 from ..sites.site_choices import Site
 from ..sites.site_sections import OfMass
 
 SETS = ("rock_avalanches (49 of Canada, the default; where they do not cover the mass, landslides of all sizes do), "
-        f"or the landslides of a TYPE[:PATH] of Corominas (1996), {', '.join(landslides.TYPES)}; paths all, "
+        f"or the landslides of a TYPE[:PATH] of Corominas (1996), {', '.join(events.TYPES)}; paths all, "
         "obstructed, deflected, channelized, unobstructed")
 
 

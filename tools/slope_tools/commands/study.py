@@ -146,7 +146,7 @@ def run_site_of(args: Request, site: Site) -> Made:
     site_study.check_site(site)
     why = "" if args.paper else known_study.why_not(args.deck) if site.choices.study.points else known_study.NONE
     if args.paper or why:
-        condition_of(replace(args, around=site))        # has no meaning here
+        condition_of(replace(args, around=site))        # refuses what has no meaning here
         method = f"{known_study.SWEEP}; {why}" if why else known_study.ASKED
         say(args, site, method, 0)
         return make_site_study(args, site, method)

@@ -1,7 +1,8 @@
 """The cut surface above a road, and what of a deposit lies above it. Index coordinates of the deposit's grid.
 
 Surface of the cut: inside the road, the ground; outside, the height of the ground at the nearest point of the road's
-edge plus tangent x distance. With h = cut - ground and the thickness t, which is even in a cell, what is removed is
+edge, no higher than the road's surface leads there, plus tangent x distance. With h = cut - ground and the thickness t,
+which is even in a cell, what is removed is
 
     clip(surface - max(ground, cut), 0, t) = max(0, t - max(0, h)) = max(0, t - h) - max(0, -h)
 
@@ -23,6 +24,7 @@ from scipy.spatial import cKDTree
 from shapely.affinity import translate
 from shapely.geometry import Point, box
 from shapely.ops import triangulate, unary_union
+from shapely.prepared import prep
 
 from ..geometry import Lines, coverage, edges, polygons_of
 from ..survey.rasters import progress
@@ -31,6 +33,8 @@ STRIP = 500_000     # parts of cells at a time
 BLOCK = 16          # cells along a side that are bounded together
 STEP = 0.25         # cells; points of the road's edge are no farther from each other
 NEAR = 4            # of these points: the nearest piece of the edge is one of theirs
+ACROSS = 0.95       # of the way across a road, which is within it
+DEPTHS = 1.5, 1.25, 1.0     # cells into a road, where its surface shows how high its edge lies; narrower ones have none
 HALF_DIAGONAL = 0.5 ** 0.5  # of a cell
 BESIDE = 1.5        # cells, of one without a height from one that has it
 WHOLE = 1e-12       # relative; an area that differs less is the same
@@ -93,16 +97,18 @@ class Edge:
         self.along = end - self.start
         self.length2 = (self.along ** 2).sum(axis=1)
         self.ground, self.tangent = ground, tangent
-        count = np.ceil(np.sqrt(self.length2) / STEP).astype(int) + 1
-        first = np.cumsum(count) - count
-        self.piece = np.repeat(np.arange(len(count)), count)
-        share = (np.arange(len(self.piece)) - first[self.piece]) / (count - 1)[self.piece]
+        self.steps = np.ceil(np.sqrt(self.length2) / STEP).astype(int)
+        self.first = np.cumsum(self.steps + 1) - self.steps - 1
+        self.piece = np.repeat(np.arange(len(self.steps)), self.steps + 1)
+        share = (np.arange(len(self.piece)) - self.first[self.piece]) / self.steps[self.piece]
         points = self.start[self.piece] + share[:, None] * self.along[self.piece]
         self.place = points.T
-        self.most = self.highest(~ground.far_from_known(*self.place)) if not ground.known.all() else None
-        self.z = self.lowered(ground.height(*self.place), np.arange(len(points)))
-        self.slack = np.abs(np.diff(self.z)).max()
         self.points = cKDTree(points)
+        self.most = self.highest(~ground.far_from_known(*self.place)) if not ground.known.all() else None
+        z = ground.height(*self.place)
+        self.drop = self.rounded(road, z)
+        self.z = self.lowered(z - self.drop, np.arange(len(points)))
+        self.slack = max(np.abs(np.diff(of)).max() for of in (z, self.z))
 
     def highest(self, known):
         """What the edge's points are no higher than: where the ground is not known, than the nearest one where it is,
@@ -112,6 +118,31 @@ class Edge:
             nearest = cKDTree(self.place.T[known]).query(self.place.T[~known])[1]
             most[~known] = self.ground.height(*self.place[:, known])[nearest]
         return most
+
+    def rounded(self, road, z):
+        """How much higher the ground z at the edge's points is than the road's surface leads to there: a cell that
+        holds the foot of a wall or of a cutting has a height between both.
+
+        The surface is a line through two points inwards; of a cutting on both sides, whose other edge is rounded, too,
+        it is no lower than the first of them. A plane is its own line, and what a third point shows to be a hollow all
+        across the road is none of the edge's.
+        """
+        inwards = np.stack([-self.along[:, 1], self.along[:, 0]], axis=1) / np.sqrt(self.length2)[:, None]
+        inwards, points = inwards[self.piece], self.place.T
+        drop, left, inside = np.zeros(len(z)), np.ones(len(z), bool), prep(road)
+        for depth in DEPTHS:
+            some = np.flatnonzero(left)
+            some = some[[inside.contains(Point(at)) for at in points[some] + ACROSS * 2 * depth * inwards[some]]]
+            wide = [inside.contains(Point(at)) for at in points[some] + ACROSS * 3 * depth * inwards[some]]
+            first, second, third = (self.ground.height(*(points[some] + k * depth * inwards[some]).T)
+                                    for k in (1, 2, 3))
+            hollow = np.where(wide, np.maximum(0.0, first - 2 * second + third), 0.0)
+            drop[some] = np.maximum(0.0, z[some] - np.maximum(2 * first - second, first) - hollow)
+            left[some] = False
+        _, same = np.unique(points.round(9), axis=0, return_inverse=True)    # two pieces share a corner
+        shared = np.zeros(same.max() + 1)
+        np.maximum.at(shared, same, drop)
+        return shared[same]
 
     def lowered(self, z, points):
         return z if self.most is None else np.minimum(z, self.most[points])
@@ -136,7 +167,12 @@ class Edge:
         foot = start + share[:, :, None] * along
         square = ((place[:, None] - foot) ** 2).sum(axis=2)
         nearest = np.arange(len(place)), square.argmin(axis=1)
-        return self.lowered(self.ground.height(*foot[nearest].T), near[:, 0]) + self.tangent * np.sqrt(square[nearest])
+        at = share[nearest] * self.steps[piece[nearest]]        # of the points of its piece
+        before = np.minimum(at.astype(int), self.steps[piece[nearest]] - 1)
+        point, part = self.first[piece[nearest]] + before, at - before
+        drop = (1 - part) * self.drop[point] + part * self.drop[point + 1]
+        return (self.lowered(self.ground.height(*foot[nearest].T) - drop, near[:, 0])
+                + self.tangent * np.sqrt(square[nearest]))
 
 
 def positive_mean(u, v, w):

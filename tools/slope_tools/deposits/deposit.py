@@ -6,7 +6,7 @@ There a cell is the unit square between whole numbers, and areas are in cells.
 import math
 import os
 from pathlib import Path
-from typing import NamedTuple, Optional, Tuple
+from typing import NamedTuple, Optional
 
 import numpy as np
 
@@ -16,12 +16,10 @@ from ..findings import Finding
 from ..geometry import extent, format_numbers
 from ..survey import rasters
 from ..survey.rasters import Raster
-from ..survey.resampling import sample
 
 SAME_BALANCE = 1e-6    # relative; volume of the raster and in the summary
 SAME_HEIGHT = 1e-7     # of the largest height; two rasters of nine digits
 EIGHT = np.ones((3, 3), int)    # neighbours of a cell, for ndimage.label
-SCAR = 0.01            # m; ground that lies so much lower than before is the slip surface
 
 
 class Deposit(NamedTuple):
@@ -158,19 +156,3 @@ def top(deposit):
     x, y = deposit.raster.transform @ (column + 0.5, row + 0.5)
     z = float(surface[row, column])
     return Top(float(x), float(y), z if math.isfinite(z) else math.nan, source)
-
-
-def find_ground_before(raster: Raster, base: np.ndarray, terrain: Optional[Path]) -> Tuple[np.ndarray, np.ndarray]:
-    """Height of the ground before (m), and depth of the body below it (m, 0 beside it).
-
-    raster: the deposit's grid; base: the ground without the body; terrain: the file of the ground before, None where it
-    is not in reach: the ground is then the base, and there is no body.
-    """
-    rows, columns = base.shape
-    heights = np.full(base.shape, np.nan)
-    if terrain:
-        x, y = raster.transform @ np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
-        heights = sample(rasters.read_asc_local(terrain), x, y)
-    heights = np.where(np.isfinite(heights), heights, base)
-    with np.errstate(invalid="ignore"):
-        return heights, np.where(heights - base > SCAR, heights - base, 0)

@@ -58,7 +58,8 @@ class Removal(NamedTuple):
 
 
 def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[Any], None] = lambda text: None) -> Removal:
-    """The volume to remove of the run whose fix deposit/grid wrote PREFIX; tell: what gets the warnings.
+    """The volume to remove of the run whose fix deposit/grid wrote PREFIX: of PREFIX.thickness.asc above the ground of
+    PREFIX.base.asc; tell: what gets the warnings.
 
     terrain: the run's, whose sidecar has the CRS (default: terrain.asc beside PREFIX). Raises SlopeError on bad input.
     """

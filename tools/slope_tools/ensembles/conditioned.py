@@ -261,7 +261,8 @@ def compute_known_quantiles(curve: hazard.Curve, shares: Sequence[float] = hazar
                             mass: Optional[Masses] = None) -> List[KnownQuantile]:
     """Values that shares of the known events stay within; None where events beyond the longest run decide.
 
-    values, mass: of the runs of the curve, which tell whether events decide that end where no run does.
+    values, mass: of the runs of the curve, whose levels are the values; they tell whether events decide that end where
+    no run does.
     """
     # a curve may begin just below its runs
     levels = np.maximum(curve.values, min(curve.values[1], 0.0))

@@ -1,19 +1,22 @@
 """The mass that falls: ground before and depth of the body on the same grid, from a release, a site, or arrays."""
 from pathlib import Path
-from typing import List, NamedTuple, Tuple
+from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
 from scipy.ndimage import label
 
+from ..deposits.deposit import Deposit
 from ..errors import SlopeError
 from ..findings import Finding
 from ..releases import release, release_area
 from ..sites import site_folder
 from ..survey import rasters
 from ..survey.rasters import Raster
+from ..survey.resampling import sample
 
 
 SIDE = 0.02     # of the volume; bodies that hold less beside the largest are not worth a word
+SCAR = 0.01     # m; ground that lies so much lower than before is the slip surface
 
 
 class Body(NamedTuple):
@@ -92,6 +95,28 @@ def of_arrays(raster: Raster, depth: np.ndarray, where: str) -> Body:
     if not depth.any():
         raise SlopeError(where, "must hold a body that is released")
     return Body(raster, depth, where)
+
+
+def of_run(run: Deposit, terrain: Optional[Path]) -> Body:
+    """The body of a run, on its grid; terrain: see find_ground_before()."""
+    before, depth = find_ground_before(run.raster, run.base, terrain)
+    return of_arrays(run.raster._replace(z=before), depth, "the run")
+
+
+def find_ground_before(raster: Raster, base: np.ndarray, terrain: Optional[Path]) -> Tuple[np.ndarray, np.ndarray]:
+    """Height of the ground before (m), and depth of the body below it (m, 0 beside it).
+
+    raster: the deposit's grid; base: the ground without the body; terrain: the file of the ground before, None where it
+    is not in reach: the ground is then the base, and there is no body.
+    """
+    rows, columns = base.shape
+    heights = np.full(base.shape, np.nan)
+    if terrain:
+        x, y = raster.transform @ np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
+        heights = sample(rasters.read_asc_local(terrain), x, y)
+    heights = np.where(np.isfinite(heights), heights, base)
+    with np.errstate(invalid="ignore"):
+        return heights, np.where(heights - base > SCAR, heights - base, 0)
 
 
 def of_release(released: release.Body, where: str) -> Body:

@@ -8,19 +8,17 @@ all before: the running minimum counts. Of a fall that none of the events had th
 of the last point before of which they do, 1 before the first one, and `said` is False.
 """
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
 from .. import digits
 from ..errors import SlopeError
-from ..survey.rasters import Raster
-from . import body, events, fall_path, landslides
+from . import body, events, fall_path
 from .body import Body
-from .events import Relation
+from .events import LandslideKind, Relation
 from .fall_path import AtRoad, FallPath
-from .landslides import LandslideKind
 
 FAR = 0.999             # the path is followed to where so many events ended
 HALF = 0.5
@@ -191,12 +189,11 @@ def choice(name: Optional[str] = None, left_out: Sequence[str] = (), confined: s
     """
     path = events.OWN if name in (None, events.OWN.stem) else Path(str(name))
     if path != events.OWN and not path.suffix and not path.is_file():
-        row = landslides.choose_landslide_row(str(name))
+        row = events.choose_landslide_row(str(name))
         if left_out:
             raise SlopeError("--except", "must be an event of a set, of which --known names none", left_out[0])
         return Choice(path, [], [], row, confined, name)
-    found = Choice(path, events.select_events(path, left_out), left_out, landslides.choose_landslide_row(), confined,
-                   name)
+    found = Choice(path, events.select_events(path, left_out), left_out, events.choose_landslide_row(), confined, name)
     found.relation      # SlopeError
     return found
 
@@ -214,15 +211,11 @@ def of_about(kept_choice: Mapping[str, Any]) -> Choice:
     return choice(kept_choice.get("set"), kept_choice.get("left_out") or (), kept_choice.get("confined", "unknown"))
 
 
-def of_mass(raster: Raster, before: np.ndarray, depth: np.ndarray, kept_choice: Mapping[str, Any],
-            site: Optional[Path] = None) -> Known:
-    """A mass among the known events of what was kept of a Choice.
-
-    raster: the grid; before: the ground with the body, m; depth: of the body, m, 0 beside it; site: whose body it is,
-    which is finer than what a run's grid has of it, and the same for all.
-    """
+def among_events(site: Optional[Path], read: Callable[[], Body], kept_choice: Mapping[str, Any]) -> Known:
+    """A mass among the known events of what was kept of a Choice: of a site, whose body is finer than what a run's grid
+    has of it, and the same for all runs; without one (None) as it is read."""
     try:
-        mass = body.read_mobility_body(site) if site else body.of_arrays(raster._replace(z=before), depth, "the run")
+        mass = body.read_mobility_body(site) if site else read()
         return Known(compute_known_mobility(mass, of_about(kept_choice)), "", mass)
     except SlopeError as error:
         return Known(None, f"The runs cannot be compared with known events: {error}")

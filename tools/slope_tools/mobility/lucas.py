@@ -75,10 +75,11 @@ def differ(opinion_: Opinion, counts: Mobility) -> Optional[Band]:
     if not counts.in_range:
         return None
     near, far = (counts.length_at(share) for share in ENDS[::-1])
-    known = Band(0.0 if counts.at_most(ENDS[1]) is not None else compute_share_beyond(near), compute_share_beyond(far))
-    return known if known.near > compute_share_beyond(opinion_.far) or known.far < compute_share_beyond(
+    known = Band(0.0 if counts.at_most(ENDS[1]) is not None else or_infinite(near), or_infinite(far))
+    return known if known.near > or_infinite(opinion_.far) or known.far < or_infinite(
         opinion_.near) else None
 
 
-def compute_share_beyond(length: Optional[float]) -> float:
+def or_infinite(length: Optional[float]) -> float:
+    """A length (m); None: beyond all."""
     return math.inf if length is None else length

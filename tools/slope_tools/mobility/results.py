@@ -16,9 +16,9 @@ from ..survey import geopackage
 from ..survey.geopackage import Layer
 from . import body, lucas
 from .body import Body
+from .events import NOT_OF_ROADS
 from .fall_path import TERRAIN, AtRoad
 from .known import WORDS, Choice, Found, Mobility, Way, choice, compute_known_mobility
-from .landslides import NOT_OF_ROADS
 
 TABLE, SUMMARY, MAP, PROFILE = "mobility.csv", "mobility.yaml", "mobility_map.png", "mobility_profile.png"
 LINES = "mobility.gpkg"
@@ -98,7 +98,7 @@ def disagreement(mass: Body, mobilities: Found) -> List[Finding]:
     return [Finding("second opinion", {
         "name": lucas.NAME, "near": ends(opinion.near, opinion.toe), "far": ends(opinion.far, opinion.toe),
         "events": mobilities.decides.law.name, "known_near": ends(known.near), "known_far": ends(known.far),
-        "farther": "the events" if known.near > lucas.compute_share_beyond(opinion.far) else "that law's masses"})]
+        "farther": "the events" if known.near > lucas.or_infinite(opinion.far) else "that law's masses"})]
 
 
 def find_mobility_caveats(mass: Body, mobilities: Found) -> List[Finding]:

@@ -16,7 +16,7 @@ from affine import Affine
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from ..deposits.deposit import EIGHT, Deposit, find_ground_before, top
+from ..deposits.deposit import EIGHT, Deposit, top
 from ..errors import SlopeError
 from ..survey.rasters import Raster
 from . import body, fall_path
@@ -123,7 +123,7 @@ def path_of(deposit: Deposit, terrain: Optional[Path]) -> Optional[FallPath]:
     """The fall path of a run's body to the end of its terrain; None without a body, or on level ground."""
     if not (terrain and terrain.is_file()):
         return None
-    before, depth = find_ground_before(deposit.raster, deposit.base, terrain)
+    before, depth = body.find_ground_before(deposit.raster, deposit.base, terrain)
     return _path(before.tobytes(), depth.tobytes(), depth.shape, tuple(deposit.raster.transform))
 
 

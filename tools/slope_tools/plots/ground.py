@@ -7,7 +7,6 @@ from scipy.ndimage import distance_transform_edt, label
 from shapely.geometry import LineString, box
 
 from .. import geometry
-from ..deposits.deposit import find_ground_before
 from ..drawing import maps
 from ..errors import SlopeError
 from ..mobility import body, known, steeper
@@ -31,7 +30,7 @@ class Ground:
         self.raster, self.base, self.cell = run.deposit.raster, run.deposit.base, run.deposit.cell
         rows, columns = self.base.shape
         self.x, self.y = self.raster.transform @ np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
-        self.before, self.slip_depth = find_ground_before(self.raster, self.base, run.terrain_path)
+        self.before, self.slip_depth = body.find_ground_before(self.raster, self.base, run.terrain_path)
         self.arrival, self.max_thickness = run.raster("arrival"), run.raster("max_thickness")
         self.max_speed = run.raster("max_speed")
         # balls larger than the cells leave holes between them
@@ -51,12 +50,16 @@ class Ground:
     @functools.cached_property
     def known(self) -> known.Known:
         """The mass among known events."""
-        return known.of_mass(self.raster, self.before, self.slip_depth, self.events, self.site)
+        return known.among_events(self.site, self.make_body, self.events)
+
+    def make_body(self) -> body.Body:
+        """That of the shown run, on its grid."""
+        return body.of_arrays(self.raster._replace(z=self.before), self.slip_depth, "the run")
 
     @functools.cached_property
     def below(self) -> steeper.Below:
         """The slope below the body; SlopeError for one on level ground."""
-        return steeper.below(body.of_arrays(self.raster._replace(z=self.before), self.slip_depth, "the run"))
+        return steeper.below(self.make_body())
 
     @functools.cached_property
     def reach(self) -> known_reach.KnownReach:

@@ -8,7 +8,7 @@ import numpy as np
 from ..drawing import figures, palettes
 from ..drawing.maps import outline, window
 from ..geometry import extent, extent_of
-from ..mobility import known
+from ..mobility import body, known
 from ..sites.site_layers import Shown
 from . import figure_maps, known_reach
 from .figure_maps import LINE, WALL
@@ -37,7 +37,8 @@ def draw_site_map(path: Path, layers: Shown, title: str) -> None:
 
 def reach_of(layers: Shown) -> known_reach.KnownReach:
     """The fall path of the body, and how far known events went on it; nothing without a body that falls."""
-    found = known.of_mass(layers.raster, layers.raster.z, layers.depth, layers.known).found
+    found = known.among_events(
+        None, lambda: body.of_arrays(layers.raster, layers.depth, "the site"), layers.known).found
     if not found:
         return known_reach.NOTHING
     path, reach = found.decides.path, known_reach.of_mobility(found.decides)

@@ -6,7 +6,7 @@ from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 
 from ..digits import percent
 from ..mobility.known import WORDS, Mobility
-from ..mobility.landslides import NOT_OF_ROADS, LandslideKind
+from ..mobility.events import NOT_OF_ROADS, LandslideKind
 from ..studies.mapped import mass, of_rows
 from ..tables.quantities import BEYOND_MAPPED as BEYOND, LENGTH, OVERLAP
 from ..tables.rows import Finished, Mapped

@@ -129,7 +129,7 @@ class Road:
         return self.brought.reach == 0
 
     def and_of(self, other: "Road") -> "Road":
-        """With the runs of both."""
+        """With the runs of both; the shares are those of the one body."""
         lengths = [road.longest_m for road in (self, other) if road.longest_m is not None]
         return replace(other, longest_m=max(lengths, default=None), brought=self.brought.and_of(other.brought))
 

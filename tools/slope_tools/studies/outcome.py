@@ -1,7 +1,7 @@
 """What the runs of a study say together: what is read of them (read_study), and the Outcome that is evaluated from it.
 
 No file of the study is written here, and nothing told: files, console and pages are made of an Outcome side by side
-(files, console, report), by results.
+(files, console; report of its Study), by results and commands/study.
 """
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -12,7 +12,7 @@ OLDER = ("study", "sizes", "step", "ensemble")      # where earlier versions had
 
 
 class Road(NamedTuple):
-    """A road, and how the volume to remove from it is measured; see deposit.volume.Wanted."""
+    """A road, and how the volume to remove from it is measured; see deposits/volume.Wanted."""
     file: Path
     cut_angle: float = 30.0     # degrees
     mesh: float = 10.0          # m

@@ -11,7 +11,7 @@ from typing import Any, Mapping, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from ..deposits import deposit
-from ..mobility import known
+from ..mobility import body, known
 from ..mobility.known import Mobility
 from ..mobility.run_length import ON_PATH
 from ..statistics import entries
@@ -48,9 +48,10 @@ class Reach:
 def known_of(prefix: Path, terrain: Optional[Path], choice: Mapping[str, Any],
              site: Optional[Path] = None) -> known.Known:
     """The mass of a run among known events; prefix: of its deposit; terrain: the ground before it; choice: of the
-    events, see known.of_about(); site: see known.of_mass()."""
-    read = deposit.read_deposit(prefix, terrain, lambda text: None)
-    return known.of_mass(read.raster, *deposit.find_ground_before(read.raster, read.base, terrain), choice, site)
+    events, see known.of_about(); site: see known.among_events()."""
+    def read() -> body.Body:
+        return body.of_run(deposit.read_deposit(prefix, terrain, lambda text: None), terrain)
+    return known.among_events(site, read, choice)
 
 
 def reach(rows: Sequence[Row], source: Optional[entries.Source], among: known.Known) -> Optional[Reach]:
