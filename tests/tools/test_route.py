@@ -408,6 +408,18 @@ def test_zones_are_said_to_end_where_mass_left_the_terrain(two, capsys):
     assert [one["kind"] for one in doubts] == ["lost much", "in motion"]
 
 
+@pytest.mark.parametrize("quantity, told", [("energy:1,1e3", True), ("speed:1,5", False), ("thickness:0.5", False)])
+def test_zones_of_the_energy_of_a_ball_are_no_classes_of_intensity(two, capsys, quantity, told):
+    """They shrink with finer balls, of which the route's have a volume."""
+    for path in two[0].glob("bodies/*/runs/*/*.max_thickness.asc"):
+        for kind in ("max_energy", "max_speed"):
+            shutil.copy(path, path.with_name(path.name.replace("max_thickness", kind)))
+    status, _, err = zones_of(two[0], capsys, "--zones", "0.5", "--intensity", quantity, "--overwrite")
+    assert status == 0 and ("energy is that of one ball of the model, of " in err) is told, err
+    doubts = yaml.safe_load((two[0] / "zones/zones.yaml").read_text())["doubts"]
+    assert [one["kind"] for one in doubts] == ["energy of balls"] * told
+
+
 @pytest.mark.parametrize("words, got", [
     ("1/100,1/1000", "1/100"), ("0.5,1/100", "1/100"), ("1/2", "1/2"), ("0.01,0.001", "0.01 and 0.001"),
     ("0.5,1e-3,1e-4", "0.001 and 0.0001")])

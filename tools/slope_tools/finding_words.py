@@ -32,6 +32,8 @@ WORDS: Dict[str, Union[str, Words]] = {
                                          "not those of a deposit."),
     "lost much": Words(f"{LEFT}, and how far they went is unknown: enlarge the terrain and the box{{add}}",
                        client=LOST),
+    "energy of balls": "energy is that of one ball of the model{size}, and an eighth with balls half as large: of a "
+                       "mass these zones are no classes of intensity; those of speed and thickness are",
     "observation missed": Words("no calibrated values reproduce what was observed: the closest are {times:.1f} times "
                                 "as far from it as chance and tolerance explain", client=(
                                     "The model was calibrated with a past event that it does not reproduce.")),

@@ -76,6 +76,7 @@ def run_zones(args: Request, zones_: str) -> None:
         outdated.check_study_current(Path(args.prefix), study)
     warn = findings.printer("export")
     ground = zones.ground_of(args.prefix, warn)
+    ground = ground._replace(doubts=[*ground.doubts, *ground.of_energy(limits)])
     zones.check_zones(ground, wanted, args.prefix, zones_)
     asked = zones.asked(ground, zones_, limits)
     disk.check_folder(folder, ["zones.gpkg", "zones.yaml"], [args.prefix, asked], args.overwrite)

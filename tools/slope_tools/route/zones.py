@@ -38,12 +38,20 @@ COLOURS = ("215,48,39", "252,141,89", "254,224,139", "217,239,139", "145,191,219
 
 class Ground(NamedTuple):
     """Where the zones are; like: {body: the known events with which it is compared}; doubts: mass that left the terrain
-    of its runs, or was in motion at their end, and what that did then."""
+    of its runs, or was in motion at their end, and what that did then; balls: m3, of the runs, where that is known."""
     raster: Raster
     sources: Sequence[Source]
     yearly: Optional[Yearly]
     like: Mapping[int, str]
     doubts: Sequence[Finding] = ()
+    balls: Sequence[float] = ()
+
+    def of_energy(self, several: Sequence["Limit"]) -> List[Finding]:
+        """That the energy of a ball is none of a block, and of a mass no intensity."""
+        size = " to ".join(dict.fromkeys(f"{one:.2g}" for one in (min(self.balls), max(self.balls)))) \
+            if self.balls else ""
+        return [Finding("energy of balls", {"size": f", of {size} m3 here" * bool(size)})] * (
+            several[0].quantity == "energy")
 
 
 class Limit(NamedTuple):
@@ -96,7 +104,8 @@ def ground_of(name: str, warn) -> Ground:
                       results.yearly_of(asked, folder, table["bodies"]),
                       {about["body"]: about["known_law"] for about in table["bodies"]},
                       [results.gravest(same, number) for kind, number in GRAVE.items()
-                       if (same := [one for one in doubts if one.kind == kind])])
+                       if (same := [one for one in doubts if one.kind == kind])],
+                      [row.ball_m3 for body in bodies for row in body.finished])
     study = study_file.study_in(folder, weighted=True)
     if study is None:
         run = deposit.read_deposit(named_run.read_named_run(name).prefix, None, warn)
@@ -113,7 +122,7 @@ def ground_of(name: str, warn) -> Ground:
     failed = sum(isinstance(row, Failed) and bool(known or not row.batch) for row in study_.runs)
     effect = 1.0 if known else len(rows) / len({str(row.set) for row in rows})
     return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset, effect)], None,
-                  {1: weighted.set} if weighted else {}, find_zone_doubts(rows))
+                  {1: weighted.set} if weighted else {}, find_zone_doubts(rows), [row.ball_m3 for row in rows])
 
 
 def find_zone_doubts(rows: Sequence[Finished]) -> List[Finding]:
