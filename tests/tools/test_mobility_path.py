@@ -350,6 +350,14 @@ def test_the_share_at_a_road_is_of_the_path_that_leads_there():
         assert way.at.met and not way.own and max(along) < 0.5 and min(shares) > 0.7
 
 
+def test_parts_of_a_mass_are_the_large_ones_the_largest_first():
+    ground, x, y = terrain(lambda x, y: 1000 - 0.5 * x)
+    crumbs = 0.1 * ((x // 10 % 2 == 0) & (y // 10 % 2 == 0) & (x > 1000))     # thousands of cells that do not touch
+    large, small = (3.0 * ((abs(x - 300) < half) & (abs(y - at) < half)) for at, half in ((300, 100), (700, 60)))
+    first, *others = body.of_arrays(ground, crumbs + small + large, "parts").parts
+    assert (first.depth == large).all() and [(one.depth == small).all() for one in others] == [True]
+
+
 def test_a_body_of_one_row_of_cells_has_no_strips(recwarn):
     ground, x, y = terrain(lambda x, y: 1000 - 0.5 * x)
     mass = body.of_arrays(ground, 3.0 * ((abs(x - 300) < 100) & (abs(y - 605) < 5)), "row")
