@@ -357,6 +357,16 @@ def test_a_polygon_made_by_buffering_the_line_gives_its_numbers(cleared, ends):
         assert about[0]["volume"][key] == pytest.approx(about[1]["volume"][key], rel=1e-6)
 
 
+def test_nothing_passes_where_a_road_of_polygons_ends(cleared):
+    """It is 8 m wide, and 5 m where a deposit lies on its eastern part, beside which 1.5 m are left."""
+    x, y = centres(160, 160, 0.5)
+    write_run(np.where((x > 40.5) & (abs(y - 50) < 5), 1.0, 0.0), 0.0, 0.5)
+    for notch, free in ((box(30, 40, 39, 60), 1.5), (box(30, 60, 39, 80), 40.5 - 40 + 7.25 / 2)):
+        road = box(36, 0, 44, 80).difference(notch)
+        [one] = cleared(road, "", f"out{free}")["stretches"]
+        assert one["passable_width"] == pytest.approx(free, abs=1e-5)
+
+
 def test_the_files_of_stretches(cleared):
     write_sidecar(40, 40, 2.0)
     write_run(patches(), 0.0, 2.0)

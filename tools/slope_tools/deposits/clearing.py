@@ -9,19 +9,21 @@ road's width W and a thickness T0 that vehicles pass:
 
 * a stretch is a largest range [s0, s1] in which the deposit is thicker than T0 somewhere within W/2 of the axis;
 * its passable width is the longest run of n within the road in which T(n) <= T0, T(n) being the largest thickness over
-  s of the stretch at the offset n;
+  s of the stretch at the offset n; beside polygons that are narrower than W somewhere in the stretch nothing passes;
 * its lane of a width w at the offset n0 is the ground with s in [s0, s1] and |n - n0| <= w/2, n0 being constant.
   Removed is what `cut` removes of a road of that shape; the lane is where that is least, |n0| <= (W - w)/2.
 
 Stretches and passable widths are exact for the cells; so are the volumes of lanes on plane ground beside a straight
 axis.
 """
+import functools
 import math
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 import rasterio
 import scipy
+from shapely import wkb
 from shapely.geometry import LineString, box
 from shapely.geometry.base import BaseGeometry
 
@@ -30,12 +32,13 @@ from ..geometry import Mesh
 from ..survey.rasters import Raster
 from ..survey.roads import Asked
 from . import cut
-from .axis import SAME, Axis, Span, longest_gap, merged, parts_of_mask
+from .axis import SAME, Axis, Span, longest_gap, merged, opened, parts_of_mask
 
 DIGITS = 6              # of lengths in m and of hours
 STEPS = 4               # positions of a lane in the width of a cell
 COARSE = 2              # samples of a cell along a side while the best position is searched for
 FINE = 0.01             # of a cell: to this the best position is refined
+RAGGED = 0.05           # m, half of the width of what lies beside a road by its outline's points alone
 FLAT = 1e-9             # relative: volumes that differ less are the same
 
 
@@ -72,8 +75,18 @@ def find_lane_stretches(deposit: Raster, axes: Sequence[Axis], width: float, blo
         spans = [axis.spans(piece, part) for piece, part in parts if part.area > 0]
         for along in merged([s for s, _ in spans], SAME):
             across = [n for s, n in spans if along.low <= s.low <= along.high]
+            across += [n for s, n in beside_road(axis.points.tobytes(), axis.s[0], width, road.wkb)
+                       if s.low <= along.high and s.high >= along.low] if road is not None else []
             stretches.append(Stretch(axis, along, longest_gap(across, Span(-width / 2, width / 2))))
     return stretches
+
+
+@functools.lru_cache(maxsize=8)
+def beside_road(points: bytes, start: float, width: float, road: bytes) -> List[Tuple[Span, Span]]:
+    """Chainages and offsets of what lies within half of a width of an axis and beside a road: nothing passes there."""
+    axis, area = Axis(np.frombuffer(points).reshape(-1, 2), start), wkb.loads(road)
+    return [axis.spans(piece, part) for piece in axis.pieces(width / 2)
+            for part in geometry.polygons_of(opened(piece.area.difference(area), -RAGGED))]
 
 
 def nearest(stretches: Sequence[Stretch], x, y):
