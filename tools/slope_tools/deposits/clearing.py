@@ -83,10 +83,12 @@ def find_lane_stretches(deposit: Raster, axes: Sequence[Axis], width: float, blo
 
 @functools.lru_cache(maxsize=8)
 def beside_road(points: bytes, start: float, width: float, road: bytes) -> List[Tuple[Span, Span]]:
-    """Chainages and offsets of what lies within half of a width of an axis and beside a road: nothing passes there."""
+    """Chainages and offsets of what lies within half of a width of an axis and beside a road: nothing passes there.
+    Not at its ends, which may be cut askew."""
     axis, area = Axis(np.frombuffer(points).reshape(-1, 2), start), wkb.loads(road)
-    return [axis.spans(piece, part) for piece in axis.pieces(width / 2)
-            for part in geometry.polygons_of(opened(piece.area.difference(area), -RAGGED))]
+    spans = [axis.spans(piece, part) for piece in axis.pieces(width / 2)
+             for part in geometry.polygons_of(opened(piece.area.difference(area), -RAGGED))]
+    return [(s, n) for s, n in spans if s.high > axis.s[0] + width and s.low < axis.s[-1] - width]
 
 
 def nearest(stretches: Sequence[Stretch], x, y):
