@@ -145,7 +145,7 @@ def evaluated(road, deposit, ground, cell, lane=LANE, blocked=0.1):
     raster = gridded(deposit, cell)
     [one] = clearing.find_lane_stretches(raster, [road.axis()], WIDTH, blocked)
     cutter = clearing.Cutter(raster, gridded(ground, cell).z, 30, 4)
-    return one, cutter.least(one, WIDTH, lane), cutter
+    return one, cutter.least(one, lane), cutter
 
 
 @pytest.mark.parametrize("way, ground, deposit", [
@@ -358,13 +358,16 @@ def test_a_polygon_made_by_buffering_the_line_gives_its_numbers(cleared, ends):
 
 
 def test_nothing_passes_where_a_road_of_polygons_ends(cleared):
-    """It is 8 m wide, and 5 m where a deposit lies on its eastern part, beside which 1.5 m are left."""
+    """It is 8 m wide, and 5 m where a deposit lies on its eastern part, beside which 1.5 m are left; a lane lies on it.
+    """
     x, y = centres(160, 160, 0.5)
     write_run(np.where((x > 40.5) & (abs(y - 50) < 5), 1.0, 0.0), 0.0, 0.5)
     for notch, free in ((box(30, 40, 39, 60), 1.5), (box(30, 60, 39, 80), 40.5 - 40 + 7.25 / 2)):
         road = box(36, 0, 44, 80).difference(notch)
-        [one] = cleared(road, "", f"out{free}")["stretches"]
+        [one] = cleared(road, "--lane 3", f"out{free}")["stretches"]
         assert one["passable_width"] == pytest.approx(free, abs=1e-5)
+        if free < 3:
+            assert one["lane_offset"] == pytest.approx(1 - 3 / 2, abs=0.01) and one["remove_lane"] > 1.5 * 10 * 1.0
 
 
 def test_the_files_of_stretches(cleared):

@@ -11,7 +11,8 @@ road's width W and a thickness T0 that vehicles pass:
 * its passable width is the longest run of n within the road in which T(n) <= T0, T(n) being the largest thickness over
   s of the stretch at the offset n; beside polygons that are narrower than W somewhere in the stretch nothing passes;
 * its lane of a width w at the offset n0 is the ground with s in [s0, s1] and |n - n0| <= w/2, n0 being constant.
-  Removed is what `cut` removes of a road of that shape; the lane is where that is least, |n0| <= (W - w)/2.
+  Removed is what `cut` removes of a road of that shape; the lane is where that is least, |n0| <= (W - w)/2, and on the
+  road where polygons are narrower.
 
 Stretches and passable widths are exact for the cells; so are the volumes of lanes on plane ground beside a straight
 axis.
@@ -47,6 +48,7 @@ class Stretch(NamedTuple):
     axis: Axis
     along: Span         # chainage, m
     passable: float     # width, m
+    free: Span          # offsets at which there is road in all of it, the longest range
 
 
 class Place(NamedTuple):
@@ -75,9 +77,10 @@ def find_lane_stretches(deposit: Raster, axes: Sequence[Axis], width: float, blo
         spans = [axis.spans(piece, part) for piece, part in parts if part.area > 0]
         for along in merged([s for s, _ in spans], SAME):
             across = [n for s, n in spans if along.low <= s.low <= along.high]
-            across += [n for s, n in beside_road(axis.points.tobytes(), axis.s[0], width, road.wkb)
-                       if s.low <= along.high and s.high >= along.low] if road is not None else []
-            stretches.append(Stretch(axis, along, longest_gap(across, Span(-width / 2, width / 2))))
+            whole = Span(-width / 2, width / 2)
+            off = [n for s, n in beside_road(axis.points.tobytes(), axis.s[0], width, road.wkb)
+                   if s.low <= along.high and s.high >= along.low] if road is not None else []
+            stretches.append(Stretch(axis, along, longest_gap([*across, *off], whole), find_free_offsets(off, whole)))
     return stretches
 
 
@@ -89,6 +92,13 @@ def beside_road(points: bytes, start: float, width: float, road: bytes) -> List[
     spans = [axis.spans(piece, part) for piece in axis.pieces(width / 2)
              for part in geometry.polygons_of(opened(piece.area.difference(area), -RAGGED))]
     return [(s, n) for s, n in spans if s.high > axis.s[0] + width and s.low < axis.s[-1] - width]
+
+
+def find_free_offsets(off: Sequence[Span], whole: Span) -> Span:
+    """The longest of the ranges of a range that are not off a road; all of it where none is left."""
+    ends = merged([Span(-math.inf, whole.low), *off, Span(whole.high, math.inf)])
+    gaps = [Span(before.high, after.low) for before, after in zip(ends, ends[1:])]
+    return max(gaps, key=lambda gap: gap.high - gap.low, default=whole)
 
 
 def nearest(stretches: Sequence[Stretch], x, y):
@@ -122,12 +132,16 @@ class Cutter:
         return cut.removed(self.deposit.z, self.ground, inside, self.tangent, mesh or cut.one_cell(self.deposit.z),
                            samples or self.samples, silent=True)
 
-    def least(self, stretch: Stretch, road: float, lane: float) -> Place:
-        """The place of a lane (width, m) through a stretch where it takes least; road: the road's width, m."""
+    def least(self, stretch: Stretch, lane: float) -> Place:
+        """The place of a lane (width, m) on the road through a stretch where it takes least."""
+        low, high = stretch.free
+        middle = (low + high) / 2
+
         def volume(offset: float, samples: Optional[int] = COARSE) -> float:
-            return float(self.removed([self.area(stretch, offset, lane)], None, samples).cells.sum()) * self.cell ** 2
-        offset = minimise_offset(volume, (road - lane) / 2, self.cell / STEPS, FINE * self.cell)
-        return Place(offset, volume(offset, None))
+            place = self.area(stretch, middle + offset, lane)
+            return float(self.removed([place], None, samples).cells.sum()) * self.cell ** 2
+        offset = minimise_offset(volume, max(0.0, high - low - lane) / 2, self.cell / STEPS, FINE * self.cell)
+        return Place(middle + offset, volume(offset, None))
 
 
 def minimise_offset(volume: Callable[[float], float], most: float, step: float, fine: float) -> float:
@@ -179,7 +193,7 @@ def evaluate_clearing(run_, result, profile, axes: Sequence[Axis], width: float,
         lane = min(asked.lane, width)
         cutter = Cutter(run_.raster, run_.base, angle, samples)
         for stretch, entry in zip(stretches, entries):
-            place = cutter.least(stretch, width, lane)
+            place = cutter.least(stretch, lane)
             areas.append(cutter.area(stretch, place.offset, lane))
             steep = cutter.removed(areas[-1:]).steep * run_.cell ** 2
             entry.update(lane_offset=round(place.offset, DIGITS), remove_lane=result.rounded(place.volume),
