@@ -12,7 +12,7 @@ import made_rows
 from test_mobility_path import SET, disc, hillside
 
 from slope_tools.digits import three
-from slope_tools.mobility import known as known_events
+from slope_tools.mobility import body, known as known_events
 from slope_tools.mobility.fall_path import TERRAIN
 from slope_tools.mobility.known import Known
 from slope_tools.mobility.results import percent
@@ -38,7 +38,8 @@ def case(lengths, volume=0.78e6, study=True, scar=1, **about):
 
 def ground_of(raster, before, depth, **about):
     return SimpleNamespace(raster=raster, before=before, slip_depth=depth,
-                           known=known_events.of_mass(raster, before, depth, about))
+                           known=known_events.among_events(None, lambda: body.of_arrays(
+                               raster._replace(z=before), depth, "the run"), about))
 
 
 @pytest.fixture(scope="module")
