@@ -52,8 +52,8 @@ class ContactWorks {
                       ri,
                       rj,
                       share,
-                      spring_force(law.spring(ri, rj), overlap),
-                      spring_energy(law.spring(ri, rj), compression),
+                      spring_force(law, overlap),
+                      spring_energy(law, compression),
                       f,
                       {delta.x / r, delta.y / r, delta.z / r}});
   }

@@ -17,6 +17,8 @@ FixStyle(CONTACT_HISTORY,FixContactHistory);
 #include "continuation.h"
 #include "restart_archive.h"
 
+#include <functional>
+
 namespace LAMMPS_NS {
 
 class FixContactHistory : public FixNeighHistory {
@@ -50,14 +52,20 @@ class FixContactHistory : public FixNeighHistory {
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
 
-  class ContactHistoryOwner *owner;    // the pair style, which sets it
+  // of the pair style, which sets them
+  class ContactGuards *guards;
+  const class PairLists *lists;
+  std::function<void()>
+      watch_energy;    // at the set-up, every EnergyGuard::EVERY steps and at the end
 
-  bool lists_new;     // the neighbor list has been rebuilt
-  bool lists_used;    // its histories are newer than those stored by atom
+  // of the pair style's lists: whether they must be made anew, told once; their histories are newer than those stored by atom
+  bool take_new_lists();
+  void note_used() { lists_used = true; }
 
   Continuation continuation;
 
  private:
+  bool lists_new, lists_used;
   tagint
       *known_as;    // ID of each ball when the contacts were stored by atom; 0: it came after that
   RestartExtra restart_extra;

@@ -206,7 +206,7 @@ int FixContactWall::pack_restart(int i, double *buf)
 void FixContactWall::unpack_restart(int i, int nth)
 {
   const int none = records.packed(0);
-  const double *list = restart_extra.find(i, nth, 1 + none, records.packed(1) - none);
+  const double *list = restart_extra.record_of_ball(i, nth, 1 + none, records.packed(1) - none);
   if (list) maxexchange = std::max(maxexchange, records.unpack(i, list + 1));
 }
 

@@ -305,7 +305,7 @@ double DepositRelease::stiffness_number(const Released &released) const
       const Slope::ContactLaw *law = pair->law(i, j);
       if (!law || largest[i] == 0.0 || largest[j] == 0.0) continue;
       const double d = std::max(largest[i], largest[j]);
-      softest = std::min(softest, law->spring(0.5 * largest[i], 0.5 * largest[j]).kn / d);
+      softest = std::min(softest, law->kn / d);
     }
   const double weight = all / released.body * gravity(groups) * released.thick;
   return softest < HUGE_VAL && weight > 0.0 ? softest / weight : 0.0;

@@ -505,7 +505,7 @@ void SpeedGuard::start()
 
 void SpeedGuard::record(int i, double speed, const Slope::ContactLaw &law)
 {
-  const double radius = atom->radius[i], deep = law.depth(atom->rmass[i], radius, speed);
+  const double radius = atom->radius[i], deep = law.depth(atom->rmass[i], speed);
   const double share = deep / (DEEPEST * radius);
   if (!(share > 1.0)) return;
   if (count++ == 0)
