@@ -12,7 +12,6 @@
 #ifndef SLOPE_CONTACT_LIST_H
 #define SLOPE_CONTACT_LIST_H
 
-#include "contact_geometry.h"
 #include "contact_kernel.h"
 
 #include <algorithm>
@@ -22,6 +21,15 @@
 #include <vector>
 
 namespace Slope {
+
+// of the centres, m
+template <class Partners>
+double distance(const MovingBalls &balls, const Partners &partners, int i, int j)
+{
+  const Vector &a = balls.x[i], &b = partners.x(j);
+  const double dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+  return std::sqrt(dx * dx + dy * dy + dz * dz);
+}
 
 class ContactList : public ContactSizes {
  public:

@@ -11,7 +11,7 @@
 #ifndef SLOPE_CONTACT_PASSES_H
 #define SLOPE_CONTACT_PASSES_H
 
-#include "contact_geometry.h"
+#include "contact_force.h"
 #include "contact_kernel.h"
 #include "contact_rows.h"
 #include "simd4.h"

@@ -6,10 +6,10 @@
 #include "fix_contact_wall.h"
 
 #include "atom.h"
-#include "empty_group.h"
 #include "error.h"
 #include "exchange_size.h"
 #include "group.h"
+#include "inserted_balls.h"
 #include "lammps_compat.h"
 #include "pair_gran_restitution.h"
 #include "update.h"

@@ -7,7 +7,7 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "contact_geometry.h"
+#include "contact_energy.h"
 #include "contact_holder.h"
 #include "error.h"
 #include "fix_contact_history.h"
