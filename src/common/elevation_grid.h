@@ -39,7 +39,6 @@ class ElevationGrid {
   // Write an ESRI ASCII grid: xllcorner form, NODATA -9999, values with so many significant
   // digits (17 keep every bit). The file appears under its name only when it is complete; an
   // error leaves nothing behind.
-  void write(const std::string &path, int digits = 9) const;
   void write(AtomicFile &, int digits = 9) const;    // which the caller commits
 
   // the text of such a file in parts, for callers that keep the rows elsewhere: header, then the rows

@@ -101,12 +101,6 @@ void FixContactWall::pre_exchange()
   reserve();
 }
 
-void FixContactWall::post_run()
-{
-  store_contacts();
-  reserve();
-}
-
 void FixContactWall::reserve()
 {
   maxexchange = exchange_size(lmp, records.largest(atom->nlocal));

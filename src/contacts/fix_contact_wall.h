@@ -27,7 +27,7 @@ class FixContactWall : public Fix, public ContactHolder {
   void init() override;
   void setup_post_neighbor() override { post_neighbor(); }
   void pre_exchange() override;
-  void post_run() override;
+  void post_run() override { FixContactWall::pre_exchange(); }
 
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;

@@ -33,7 +33,7 @@ RegionSurface::RegionSurface(LAMMPS *lmp, const std::string &caller, const char 
     Pointers(lmp),
     terrain(nullptr)
 {
-  region = compat::find_region(lmp, region_id);
+  Region *const region = compat::find_region(lmp, region_id);
   if (!region) error->all(FLERR, "{} region {} does not exist", caller, region_id);
   region->init();
 

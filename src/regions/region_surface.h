@@ -57,7 +57,6 @@ class RegionSurface : protected Pointers {
   double xlo, xhi, ylo, yhi, zlo, zhi;
 
  private:
-  class Region *region;
   const class RegTerrain *terrain;    // set if its grid is the boundary
   bool lower;
   double step;
