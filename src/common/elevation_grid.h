@@ -7,6 +7,8 @@
 #ifndef SLOPE_ELEVATION_GRID_H
 #define SLOPE_ELEVATION_GRID_H
 
+#include "constants.h"
+
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -25,7 +27,7 @@ class AtomicFile;
 // Errors are std::runtime_error with one line: file, line in it, rule, value.
 class ElevationGrid {
  public:
-  static constexpr double MAXCELLS = 2147483647.0;    // cells are counted with int
+  static constexpr double MAXCELLS = MOST_COUNTED;
 
   ElevationGrid() : nx(0), ny(0), xlo(0.0), ylo(0.0), cell(1.0), elsewhere(nullptr) {}
 

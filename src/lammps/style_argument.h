@@ -71,9 +71,6 @@ class KeywordReader {
   std::string item(int k) const;
 };
 
-// Coordinates beyond it are mistakes: places closer to each other than 1e-4 would be one there.
-static constexpr double FARTHEST = 1.0e12;
-
 }    // namespace LAMMPS_NS
 
 #endif
