@@ -138,7 +138,7 @@ class ContactList : public ContactSizes {
     if (entries.empty()) return;
     ContactView v = view();
     if (!Partners::MOVE && watched > 0 && !repeat) look_near(v, balls.x);
-    ContactKernels::current().find_contacts(partners)(v, repeat, balls, partners);
+    ContactKernels::current().with(partners).find_contacts(v, repeat, balls, partners);
   }
 
   void flag_histories() const
@@ -153,8 +153,8 @@ class ContactList : public ContactSizes {
   {
     if (entries.empty()) return;
     if (!equal) make_rows(dt);
-    ContactKernels::current().apply_contacts(partners)(view(), law, dt, repeat, balls, partners,
-                                                       tally);
+    ContactKernels::current().with(partners).apply_contacts(view(), law, dt, repeat, balls,
+                                                            partners, tally);
   }
 
  private:

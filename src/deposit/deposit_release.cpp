@@ -9,6 +9,7 @@
 #include "constants.h"
 #include "deposit_balls.h"
 #include "deposit_options.h"
+#include "gravity_work.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
 #include "pair_gran_restitution.h"
@@ -317,8 +318,7 @@ double DepositRelease::gravity(int mine) const
     int pulls_mine = (mine & fix->groupbit) != 0, pulls;
     MPI_Allreduce(&pulls_mine, &pulls, 1, MPI_INT, MPI_MAX, world);
     if (!pulls) continue;
-    int dim;
-    const double *g = static_cast<double *>(fix->extract("gvec", dim));
+    const double *g = acceleration_of(fix);
     for (int d = 0; d < 3; d++) sum[d] += g[d];
   }
   return sqrt(sum[X] * sum[X] + sum[Y] * sum[Y] + sum[Z] * sum[Z]);

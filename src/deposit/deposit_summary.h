@@ -15,6 +15,8 @@
 
 namespace Slope {
 
+static constexpr double SHARES[] = {0.5, 0.9, 0.95, 0.99};    // that quantiles are of
+
 // Content of PREFIX.summary.yaml. Units are those of the run, angles in degrees,
 // volumes are bulk unless stated otherwise.
 struct DepositSummary {
