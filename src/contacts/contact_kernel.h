@@ -5,7 +5,8 @@
 ------------------------------------------------------------------------- */
 
 /* The two passes of a step over a list of contacts, compiled for several instruction sets. The pair style chooses the
-   best one that the processors of all ranks have, unless the environment names one; without it, the first use does. No LAMMPS.
+   best one that the processors of all ranks have, unless the environment names one; without it, the first
+   use does. No LAMMPS.
 
    Results of one kernel are the same from run to run; those of two kernels differ by rounding, because some
    processors multiply and add without rounding in between. */

@@ -55,10 +55,10 @@ class FixContactHistory : public FixNeighHistory {
   // of the pair style, which sets them
   class ContactGuards *guards;
   const class PairLists *lists;
-  std::function<void()>
-      watch_energy;    // at the set-up, every EnergyGuard::EVERY steps and at the end
+  std::function<void()> watch_energy;    // every EnergyGuard::EVERY steps, before and at the end
 
-  // of the pair style's lists: whether they must be made anew, told once; their histories are newer than those stored by atom
+  // Whether the neighbor list is a new one, told once: the pair style's lists must be made anew. When these
+  // have been used, their histories are newer than those stored by atom.
   bool take_new_lists();
   void note_used() { lists_used = true; }
 

@@ -10,8 +10,8 @@
 
 namespace LAMMPS_NS {
 
-// what fixes tell of themselves: the acceleration of a fix gravity, m/s2; the work of all fixes ground/motion so far on this
-// rank's balls, J
+// what fixes tell of themselves: the acceleration of a fix gravity, m/s2; the work of all fixes ground/motion
+// so far on this rank's balls, J
 const double *acceleration_of(class Fix *gravity);
 double shaking_work(class LAMMPS *);
 

@@ -87,8 +87,8 @@ class BallGround : protected Pointers {
   bool keep(double x, double y) const;
   int zone(double x, double y) const;    // from 1, 0: in none
 
-  // The plan grid and the surface as it sees it: where the grid is turned, in coordinates that turn with it. For marks the
-  // surface is an upper boundary before it is sunk.
+  // The plan grid, and for marks the surface as it sees it, an upper boundary before it is sunk: where the grid
+  // is turned, in coordinates that turn with it
   Slope::NodeGrid grid() const;
   Slope::GroundHeights looked_at() const;
 

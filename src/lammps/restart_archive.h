@@ -48,9 +48,9 @@ class RestartExtra : protected Pointers {
   {
   }
 
-  // What the file has for ball i and the nth fix, as LAMMPS' unpack_restart() counts them: how many numbers there are, this one
-  // included, then, where each > 0, the number of contacts, and so on: fixed numbers in all, these included, and each more
-  // for every contact. nullptr: the file is damaged
+  // What the file has for ball i and the nth fix, as LAMMPS' unpack_restart() counts them: how many numbers
+  // there are, this one included, then, where each > 0, the number of contacts, and so on: fixed numbers in all,
+  // these included, and each more for every contact. nullptr: the file is damaged
   const double *record_of_ball(int i, int nth, int fixed, int each);
 
   void check(const std::string &caller) const;    // collective
