@@ -6,6 +6,8 @@
 
 #include "archive.h"
 
+#include "constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,7 +18,6 @@ using namespace Slope;
 
 static constexpr char MARK[] = "SLOPE\0\0";    // with the 0 at its end: 8 bytes
 static constexpr size_t NAME = 24;             // bytes of a member's name
-static constexpr double MOST_BYTES = 2147483647.0;
 
 constexpr size_t Archive::HEAD;
 
@@ -84,7 +85,7 @@ size_t Archive::length(const char *head)
   if (memcmp(head, MARK, sizeof(MARK)) != 0) return 0;
   Twice size;
   memcpy(&size, head + sizeof(MARK), sizeof(size));
-  if (!size.whole(MOST_BYTES) || size.number < HEAD)
+  if (!size.whole(MOST_COUNTED) || size.number < HEAD)
     damaged("a whole number of bytes, there twice, got " + text(size.number) + " and " +
             text(-1.0 - size.again));
   return static_cast<size_t>(size.number);
@@ -137,7 +138,7 @@ size_t Archive::count(const std::string &name, size_t n, double most)
 
 void Archive::numbers(const std::string &name, double *values, size_t n)
 {
-  const size_t found = count(name, n, MOST_BYTES / sizeof(double));
+  const size_t found = count(name, n, MOST_COUNTED / sizeof(double));
   if (found != n)
     damaged(std::to_string(n) + " values in " + name + ", got " + std::to_string(found));
   if (reads())

@@ -327,15 +327,6 @@ ElevationGrid ElevationGrid::read(const std::string &path)
 
 /* ---------------------------------------------------------------------- */
 
-void ElevationGrid::write(const std::string &path, int digits) const
-{
-  AtomicFile file(path);
-  write(file, digits);
-  file.commit();
-}
-
-/* ---------------------------------------------------------------------- */
-
 void ElevationGrid::write(AtomicFile &file, int digits) const
 {
   file.write(header(nx, ny, xlo, ylo, cell));

@@ -7,6 +7,8 @@
 #ifndef SLOPE_ELEVATION_GRID_H
 #define SLOPE_ELEVATION_GRID_H
 
+#include "constants.h"
+
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -25,7 +27,7 @@ class AtomicFile;
 // Errors are std::runtime_error with one line: file, line in it, rule, value.
 class ElevationGrid {
  public:
-  static constexpr double MAXCELLS = 2147483647.0;    // cells are counted with int
+  static constexpr double MAXCELLS = MOST_COUNTED;
 
   ElevationGrid() : nx(0), ny(0), xlo(0.0), ylo(0.0), cell(1.0), elsewhere(nullptr) {}
 
@@ -39,7 +41,6 @@ class ElevationGrid {
   // Write an ESRI ASCII grid: xllcorner form, NODATA -9999, values with so many significant
   // digits (17 keep every bit). The file appears under its name only when it is complete; an
   // error leaves nothing behind.
-  void write(const std::string &path, int digits = 9) const;
   void write(AtomicFile &, int digits = 9) const;    // which the caller commits
 
   // the text of such a file in parts, for callers that keep the rows elsewhere: header, then the rows

@@ -5,7 +5,7 @@
 ------------------------------------------------------------------------- */
 
 /* The contact kernels are compiled several times, for several instruction sets, and one is chosen when
-   the program starts (contact_kernel.h). What they are made of is therefore in an inline namespace of
+   the pair style is defined (contact_kernel.h). What they are made of is therefore in an inline namespace of
    its own for each: the linker must never take one set's code for another's. */
 
 #ifndef SLOPE_INSTRUCTION_SET_H

@@ -6,6 +6,7 @@
 
 #include "plan_line.h"
 
+#include "constants.h"
 #include "number_rows.h"
 #include "text_file.h"
 
@@ -13,8 +14,6 @@
 #include <cmath>
 
 using namespace Slope;
-
-static constexpr double LARGEST = 1.0e12;    // coordinates; their products must be finite
 
 /* ---------------------------------------------------------------------- */
 
@@ -38,9 +37,9 @@ PlanLine PlanLine::read(const std::string &path, bool si)
   std::vector<double> points;
   read_number_rows(path, {"xy", "x y or x,y", si, 1.0}, [&](const NumberRow &row) {
     const double x = row.values[0], y = row.values[1];
-    if (!(std::fabs(x) <= LARGEST && std::fabs(y) <= LARGEST))
+    if (!(std::fabs(x) <= FARTHEST && std::fabs(y) <= FARTHEST))
       throw line_error(path, row.line,
-                       "x and y must be within +-" + number_text(LARGEST) + ", got " +
+                       "x and y must be within +-" + number_text(FARTHEST) + ", got " +
                            number_text(x) + " " + number_text(y));
     const size_t n = points.size();
     if (n > 0 && row.apart)
@@ -69,7 +68,7 @@ double PlanLine::checksum() const
 {
   double sum = 0.0, x_weight = 0.0, y_weight = 0.0;
   for (size_t k = 0; k < xy.size(); k += 2) {
-    x_weight = std::fmod(x_weight + 0.6180339887498949, 1.0);
+    x_weight = std::fmod(x_weight + GOLDEN, 1.0);
     y_weight = std::fmod(y_weight + 0.4142135623730950, 1.0);
     sum += (1.0 + x_weight) * xy[k] + (1.0 + y_weight) * xy[k + 1];
   }

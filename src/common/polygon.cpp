@@ -6,6 +6,7 @@
 
 #include "polygon.h"
 
+#include "constants.h"
 #include "number_rows.h"
 #include "text_file.h"
 
@@ -17,7 +18,6 @@
 
 using namespace Slope;
 
-static constexpr double LARGEST = 1.0e12;      // coordinates; their products must be finite
 static constexpr double MOST_PARTS = 64.0;     // of edges in strips, per edge: bounds the memory
 static constexpr double ROUNDING = 4.0e-16;    // relative error of a determinant's terms
 
@@ -50,9 +50,9 @@ Rings read_rings(const std::string &path, bool si)
   Rings rings;
   read_number_rows(path, {"xy", "x,y", si, 1.0}, [&](const NumberRow &row) {
     const Point p = {row.values[0], row.values[1]};
-    if (!(std::fabs(p.x) <= LARGEST && std::fabs(p.y) <= LARGEST))
+    if (!(std::fabs(p.x) <= FARTHEST && std::fabs(p.y) <= FARTHEST))
       throw line_error(path, row.line,
-                       "x and y must be within +-" + number_text(LARGEST) + ", got " +
+                       "x and y must be within +-" + number_text(FARTHEST) + ", got " +
                            number_text(p.x) + "," + number_text(p.y));
     if (row.apart || rings.points.empty()) {
       rings.points.emplace_back();

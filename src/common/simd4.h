@@ -96,11 +96,6 @@ SLOPE_INLINE int bits(FourFlags a)
 #endif
 }
 
-SLOPE_INLINE int bits(bool a)
-{
-  return a;
-}
-
 SLOPE_INLINE Four root(Four a)
 {
 #ifdef __AVX__

@@ -34,7 +34,7 @@ struct MovingBalls {
   Vector *f, *torque;
   const Vector *ahead;       // velocities that normal dashpots act on: Continuation::look_ahead()
   unsigned char *count;      // contacts of each ball now; up to 255
-  FixedContacts *fixed;      // of each ball of this rank
+  FixedContacts *fixed;      // of each ball of this rank; of ghosts, too, where ranks share them
   BallsOnFixed *on_fixed;    // nullptr: not asked for
 };
 

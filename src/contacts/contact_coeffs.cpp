@@ -196,19 +196,18 @@ const char *ContactCoeffs::heading()
          "rolling  contact/dt\n";
 }
 
-std::string ContactCoeffs::line(const ContactLaw &law, double mi, double mj, double radius,
-                                double dt) const
+std::string ContactCoeffs::line(const ContactLaw &law, double mi, double mj, double dt) const
 {
   // a ball on a fixed one: the lighter of the moving types
 
   const bool both = mi > 0.0 && mj > 0.0;
   double m = both ? std::min(mi, mj) : std::max(mi, mj);
-  SpringDashpot normal = law.normal(law.mass_fixed(m), radius);
+  SpringDashpot normal = law.normal(m);
   const double e_fixed = restitution(normal.damping_ratio(m));
   std::string e_moving = "-";
   if (both) {
     m = mi * mj / (mi + mj);
-    normal = law.normal(law.mass(mi, mj), radius);
+    normal = law.normal(law.mass_factor * mi * mj / (mi + mj));
     e_moving = fmt::format("{:.4f}", restitution(normal.damping_ratio(m)));
   }
   const double zeta = normal.damping_ratio(m), steps = contact_time(normal.k, m, zeta) / dt;

@@ -53,9 +53,9 @@ struct ContactCoeffs {
   Slope::ContactLaw law(const ContactSettings &) const;
 
   // A line of the table in the log, and its heading. mi, mj: mass (kg) of the lightest moving balls of the two
-  // types, 0 of one that has none; radius (m): of the largest; dt: time step, s
+  // types, 0 of one that has none; dt: time step, s
   static const char *heading();
-  std::string line(const Slope::ContactLaw &, double mi, double mj, double radius, double dt) const;
+  std::string line(const Slope::ContactLaw &, double mi, double mj, double dt) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -4,17 +4,42 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-/* What the springs of the contacts of a list can give back: no more than friction lets through, and
-   nothing where a sliding contact's spring only balances its dashpot. No LAMMPS. */
+/* A contact of two balls as the law sees it, and what the springs of the contacts of a list can give back: no more than
+   friction lets through, and nothing where a sliding contact's spring only balances its dashpot. No LAMMPS. */
 
 #ifndef SLOPE_CONTACT_ENERGY_H
 #define SLOPE_CONTACT_ENERGY_H
 
+#include "contact_force.h"
 #include "contact_list.h"
 
 #include <algorithm>
 
 namespace Slope {
+
+// geometry and velocities of the contact of ball i with partner j; delta: from the partner to the ball, m
+template <class Partners>
+void set_contact(const ContactLaw &law, const MovingBalls &balls, const Partners &partners, int i,
+                 int j, Contact &c, Vector &delta)
+{
+  const double ri = balls.radius[i], rj = partners.radius(j);
+  const double *xi = &balls.x[i].x, *xj = &partners.x(j).x;
+  const double *vi = &balls.v[i].x, *vj = &partners.v(j).x;
+  const double *wi = &balls.omega[i].x, *wj = &partners.omega(j).x;
+  delta = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
+  const double r = distance(balls, partners, i, j);
+  c.overlap = touching(ri, rj) - r;
+  const Vector &a = balls.ahead[i], &b = partners.ahead(j);
+  c.ahead = ((a.x - b.x) * delta.x + (a.y - b.y) * delta.y + (a.z - b.z) * delta.z) / r;
+  c.follow_whole_step();
+  c.rolling_radius = law.rolling_factor * ri * rj / (ri + rj);
+  for (int d = 0; d < 3; d++) {
+    c.n[d] = (xi[d] - xj[d]) / r;
+    c.v[d] = vi[d] - vj[d];
+    c.rw[d] = ri * wi[d] + rj * wj[d];
+    c.w[d] = wi[d] - wj[d];
+  }
+}
 
 // Twice the energy (J) that a spring of stretch s (m) can give back, its ends moving at u (m/s): at a
 // force of most (N) it slides. limit: the same for spring and dashpot together, now.

@@ -24,7 +24,7 @@ template <class T, class N = T> struct ContactOf {
   T n[3];              // unit normal, partner to ball
   T overlap;           // m; < 0 if the contact has ended
   T v[3];              // velocity of the ball minus that of the partner, m/s
-  T ahead;             // normal velocity that the dashpot acts on, m/s
+  T ahead;             // normal velocity that the dashpot acts on, of MovingBalls::ahead, m/s
   T rw[3];             // R_i w_i + R_j w_j, m/s
   T w[3];              // w_i - w_j, rad/s
   N rolling_radius;    // m

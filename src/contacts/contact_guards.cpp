@@ -450,9 +450,7 @@ void MotionGuard::check_gravity(std::vector<std::string> &found) const
   const bigint n = count_free([&](int i) {
     double g = 0.0;
     for (Fix *fix : fixes) {
-      if (!(atom->mask[i] & fix->groupbit)) continue;
-      int dim;
-      g += static_cast<double *>(fix->extract("gvec", dim))[up];
+      if (atom->mask[i] & fix->groupbit) g += acceleration_of(fix)[up];
     }
     most = std::max(most, g);
     return g > 0.0;

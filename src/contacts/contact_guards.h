@@ -125,7 +125,7 @@ class ContactGuards : protected Pointers {
 
 // The guard against balls that are placed inside each other. A linear spring of this
 // stiffness turns an overlap of a few per cent of the radius into a shot; a run must not
-// start from one. Used by the pair style and by the wall fix at set-up; contacts that come
+// start from one. Used by the pair style and by the walls at set-up; contacts that come
 // with a history (a continued or restarted run) are not looked at, nor are the snapshots of rerun.
 class InitialOverlap : protected Pointers {
  public:

@@ -4,8 +4,9 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-/* The two passes of a step over a list of contacts, compiled for several instruction sets. The best one
-   that the processor has is chosen when it is first asked for. No LAMMPS.
+/* The two passes of a step over a list of contacts, compiled for several instruction sets. The pair style chooses the
+   best one that the processors of all ranks have, unless the environment names one; without it, the first
+   use does. No LAMMPS.
 
    Results of one kernel are the same from run to run; those of two kernels differ by rounding, because some
    processors multiply and add without rounding in between. */
@@ -92,41 +93,28 @@ struct ContactTally {
   void *visitor;
 };
 
-// The passes compiled for one instruction set, for each kind of partners: find_contacts() and apply_contacts() of
-// contact_passes.h
-struct ContactKernel {
-  template <class Partners>
-  using Find = void (*)(const ContactView &, bool repeat, const MovingBalls &, const Partners &);
-  template <class Partners>
-  using Apply = void (*)(const ContactView &, const ContactLaw &, double dt, bool repeat,
-                         const MovingBalls &, const Partners &, ContactTally *);
+// the passes with one kind of partners: find_contacts() and apply_contacts() of contact_passes.h
+template <class Partners> struct PassesOf {
+  // First pass: which contacts touch, as bits, and the balls' numbers of contacts. repeat: what touched in
+  // the step that has just ended.
+  void (*find_contacts)(const ContactView &, bool repeat, const MovingBalls &, const Partners &);
 
-  Find<MovingPartners> find_contacts_of_moving;
-  Find<FixedPartners> find_contacts_of_fixed;
-  Apply<MovingPartners> apply_contacts_of_moving;
-  Apply<FixedPartners> apply_contacts_of_fixed;
+  // Second pass: adds the forces to the balls, whose numbers of contacts are complete. tally: nullptr
+  // if not needed
+  void (*apply_contacts)(const ContactView &, const ContactLaw &, double dt, bool repeat,
+                         const MovingBalls &, const Partners &, ContactTally *);
+};
+
+// what is compiled for one instruction set
+struct ContactKernel {
+  PassesOf<MovingPartners> of_moving;
+  PassesOf<FixedPartners> of_fixed;
 
   // whether one of n numbers differs from what it was by more than that
   bool (*any_moved)(const double *now, const double *was, size_t n, double most);
 
-  // First pass: which contacts touch, as bits, and the balls' numbers of contacts. repeat: what touched in
-  // the step that has just ended.
-  Find<MovingPartners> find_contacts(const MovingPartners &) const
-  {
-    return find_contacts_of_moving;
-  }
-  Find<FixedPartners> find_contacts(const FixedPartners &) const { return find_contacts_of_fixed; }
-
-  // Second pass: adds the forces to the balls, whose numbers of contacts are complete. tally: nullptr
-  // if not needed
-  Apply<MovingPartners> apply_contacts(const MovingPartners &) const
-  {
-    return apply_contacts_of_moving;
-  }
-  Apply<FixedPartners> apply_contacts(const FixedPartners &) const
-  {
-    return apply_contacts_of_fixed;
-  }
+  const PassesOf<MovingPartners> &with(const MovingPartners &) const { return of_moving; }
+  const PassesOf<FixedPartners> &with(const FixedPartners &) const { return of_fixed; }
 };
 
 namespace ContactKernels {

@@ -53,10 +53,6 @@ struct SpringDashpot {
   double damping_ratio(double m) const { return c / (2.0 * std::sqrt(k * m)); }    // of a mass, kg
 };
 
-struct NormalSpring {
-  double kn;    // N/m
-};
-
 // What one pair of types needs per contact. A dashpot is either a number given by the user
 // (N s/m) or follows from a restitution and then grows with the root of the contact's mass:
 // c = c_given + c_root * sqrt(m). One of the two is zero.
@@ -71,26 +67,11 @@ struct ContactLaw {
   double fn_least;    // smallest normal force: -HUGE_VAL, or 0 when it must not pull
   double exact;       // 1: scheme exact, 0: plain (see contact_step())
 
-  // mass (kg) in c = 2 zeta sqrt(k m): two moving balls, or a ball on a fixed one
-  double mass(double mi, double mj) const { return mass_factor * mi * mj / (mi + mj); }
-  double mass_fixed(double mi) const { return mi; }
-
-  double cn(double m) const { return cn_given + cn_root * std::sqrt(m); }
-
-  // Radii are there for laws whose springs depend on them (architecture.rst has how to add one); those of this
-  // law do not.
-  NormalSpring spring(double /*ri*/, double /*rj*/) const { return {kn}; }    // of two balls
-
-  // --- for what bounds the time step and is said of a law, whatever its springs are like ---
-
-  // spring and dashpot of a contact of mass m (kg), as stiff as they get at overlaps of a tenth of the larger radius (m)
-  SpringDashpot normal(double m, double /*radius*/) const { return {kn, cn(m)}; }
+  // spring and dashpot of a contact of mass m (kg)
+  SpringDashpot normal(double m) const { return {kn, cn_given + cn_root * std::sqrt(m)}; }
 
   // overlap (m) that a ball of mass m reaches on a fixed surface which it hits at a speed (m/s), undamped
-  double depth(double m, double /*radius*/, double speed) const
-  {
-    return speed * std::sqrt(m / kn);
-  }
+  double depth(double m, double speed) const { return speed * std::sqrt(m / kn); }
 };
 
 // Distance of the centres, m, at which balls of these radii (m) touch. Neighbours in a lattice are apart by the sum of
@@ -101,7 +82,7 @@ template <class N> SLOPE_INLINE N touching(N ri, N rj)
   return ri + rj - 4.0e-7 * ri * rj / (ri + rj);
 }
 
-// The normal spring at an overlap (m): its force, N, and what it holds, J. Law: NormalSpring, or a step.
+// The normal spring at an overlap (m): its force, N, and what it holds, J. Law: the law, or a step.
 template <class Law, class T> SLOPE_INLINE T spring_force(const Law &law, T overlap)
 {
   return law.kn * overlap;

@@ -12,7 +12,6 @@
 #ifndef SLOPE_CONTACT_LIST_H
 #define SLOPE_CONTACT_LIST_H
 
-#include "contact_geometry.h"
 #include "contact_kernel.h"
 
 #include <algorithm>
@@ -22,6 +21,15 @@
 #include <vector>
 
 namespace Slope {
+
+// of the centres, m
+template <class Partners>
+double distance(const MovingBalls &balls, const Partners &partners, int i, int j)
+{
+  const Vector &a = balls.x[i], &b = partners.x(j);
+  const double dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+  return std::sqrt(dx * dx + dy * dy + dz * dz);
+}
 
 class ContactList : public ContactSizes {
  public:
@@ -130,7 +138,7 @@ class ContactList : public ContactSizes {
     if (entries.empty()) return;
     ContactView v = view();
     if (!Partners::MOVE && watched > 0 && !repeat) look_near(v, balls.x);
-    ContactKernels::current().find_contacts(partners)(v, repeat, balls, partners);
+    ContactKernels::current().with(partners).find_contacts(v, repeat, balls, partners);
   }
 
   void flag_histories() const
@@ -145,8 +153,8 @@ class ContactList : public ContactSizes {
   {
     if (entries.empty()) return;
     if (!equal) make_rows(dt);
-    ContactKernels::current().apply_contacts(partners)(view(), law, dt, repeat, balls, partners,
-                                                       tally);
+    ContactKernels::current().with(partners).apply_contacts(view(), law, dt, repeat, balls,
+                                                            partners, tally);
   }
 
  private:

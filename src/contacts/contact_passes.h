@@ -11,7 +11,7 @@
 #ifndef SLOPE_CONTACT_PASSES_H
 #define SLOPE_CONTACT_PASSES_H
 
-#include "contact_geometry.h"
+#include "contact_force.h"
 #include "contact_kernel.h"
 #include "contact_rows.h"
 #include "simd4.h"
@@ -676,10 +676,10 @@ void apply_contacts(const ContactView &view, const ContactLaw &law, double dt, b
 }    // namespace Slope
 
 // a constant, so that none of this code runs before its kernel has been chosen
-#define SLOPE_CONTACT_KERNEL                                                                     \
-  {                                                                                              \
-    find_contacts<MovingPartners>, find_contacts<FixedPartners>, apply_contacts<MovingPartners>, \
-        apply_contacts<FixedPartners>, any_moved                                                 \
+#define SLOPE_CONTACT_KERNEL                                                     \
+  {                                                                              \
+    {find_contacts<MovingPartners>, apply_contacts<MovingPartners>},             \
+        {find_contacts<FixedPartners>, apply_contacts<FixedPartners>}, any_moved \
   }
 
 #endif

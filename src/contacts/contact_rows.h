@@ -11,7 +11,6 @@
 #ifndef SLOPE_CONTACT_ROWS_H
 #define SLOPE_CONTACT_ROWS_H
 
-#include "contact_geometry.h"
 #include "contact_kernel.h"
 #include "simd4.h"
 

@@ -113,12 +113,11 @@ template <class N> SLOPE_INLINE N stepped_spring(N a, N h)
 
 // inverse_i, inverse_j (1/kg): 1/m_i and 1/m_j, 0 of a fixed ball. mass_dashpot (kg): that of the
 // conversion restitution -> dashpot. inverse_rolling (1/kg): 2.5 Rr^2 (1/(m_i R_i^2) + 1/(m_j R_j^2)),
-// of solid spheres. radius (m): reduced, RiRj/(Ri + Rj), for springs that depend on it. dt (s) > 0; repeat: for the
-// forces of the step that has just ended once more.
+// of solid spheres. dt (s) > 0; repeat: for the forces of the step that has just ended once more.
 template <class N>
 SLOPE_INLINE ContactStepOf<N> contact_step(const ContactLaw &law, N inverse_i, N inverse_j,
-                                           N mass_dashpot, N inverse_rolling, N /*radius*/,
-                                           double dt, bool repeat)
+                                           N mass_dashpot, N inverse_rolling, double dt,
+                                           bool repeat)
 {
   const N root_mass = root(mass_dashpot);
   const N inverse = inverse_i + inverse_j, point = POINT * inverse;
@@ -162,9 +161,9 @@ template <class N>
 SLOPE_INLINE ContactStepOf<N> step_of(const Sides &moves, const ContactLaw &law, double dt,
                                       bool repeat, N ri, N rj, N mi, N mj)
 {
-  return contact_step(
-      law, N(moves.i / mi), N(moves.j / mj), N(moves.mass_factor(law) / moves.inverse_mass(mi, mj)),
-      moves.inverse_rolling(law, ri, rj, mi, mj), N(ri * rj / (ri + rj)), dt, repeat);
+  return contact_step(law, N(moves.i / mi), N(moves.j / mj),
+                      N(moves.mass_factor(law) / moves.inverse_mass(mi, mj)),
+                      moves.inverse_rolling(law, ri, rj, mi, mj), dt, repeat);
 }
 
 }    // namespace SLOPE_INSTRUCTIONS

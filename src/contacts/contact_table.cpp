@@ -183,13 +183,7 @@ double ContactTable::dashpot_bound(int i, int j) const
 
 SpringDashpot ContactTable::normal(int i, int j) const
 {
-  return law(i, j).normal(lightest(i, j), largest(i, j));
-}
-
-double ContactTable::largest(int i, int j) const
-{
-  const TypeRange &a = ranges[i], &b = ranges[j];
-  return std::max({a.radius_dynamic, b.radius_dynamic, a.radius_frozen, b.radius_frozen});
+  return law(i, j).normal(lightest(i, j));
 }
 
 double ContactTable::lightest(int i, int j) const
@@ -214,7 +208,7 @@ std::string ContactTable::text(double dt) const
     for (int j = i; j <= atom->ntypes; j++)
       if (can_touch(i, j))
         text += fmt::format("  {:<3} {:<3}  ", i, j) +
-            coeffs[index(i, j)].line(law(i, j), lightest_of(i), lightest_of(j), largest(i, j), dt);
+            coeffs[index(i, j)].line(law(i, j), lightest_of(i), lightest_of(j), dt);
   return text + "  e fixed: against a fixed ball. friction, rolling: angles in degrees.\n";
 }
 

@@ -78,7 +78,6 @@ class ContactTable : protected Pointers {
   std::vector<char> wall_type;            // by type: 1 if a wall fix uses it
 
   int index(int itype, int jtype) const;
-  double largest(int itype, int jtype) const;    // radius of a ball of both types, m
 };
 
 }    // namespace LAMMPS_NS

@@ -52,8 +52,8 @@ class ContactWorks {
                       ri,
                       rj,
                       share,
-                      spring_force(law.spring(ri, rj), overlap),
-                      spring_energy(law.spring(ri, rj), compression),
+                      spring_force(law, overlap),
+                      spring_energy(law, compression),
                       f,
                       {delta.x / r, delta.y / r, delta.z / r}});
   }
@@ -70,10 +70,9 @@ class ContactWorks {
       const Vector u = {vi.x - vj.x, vi.y - vj.y, vi.z - vj.z};
       const Vector w = {c.ri * wi.x + c.rj * wj.x, c.ri * wi.y + c.rj * wj.y,
                         c.ri * wi.z + c.rj * wj.z};
-      const Vector spin = {w.y * n.z - w.z * n.y, w.z * n.x - w.x * n.z, w.x * n.y - w.y * n.x};
       const double un = dot(u, n), part = dt * c.share;
       const double elastic = c.elastic, normal = dot(c.f, n);
-      const double torque = -part * dot(c.f, spin);
+      const double torque = -part * dot(c.f, cross(w, n));
       sum.spring += part * elastic * un;
       sum.dashpot += part * (normal - elastic) * un;
       sum.sliding += part * (dot(c.f, u) - normal * un) + torque;
@@ -90,8 +89,6 @@ class ContactWorks {
     Vector f, n;
   };
   std::vector<Force> forces;
-
-  static double dot(const Vector &a, const Vector &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 };
 
 }    // namespace Slope

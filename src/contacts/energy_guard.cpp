@@ -111,12 +111,7 @@ bool EnergyGuard::check(double elastic)
          0.4 * r * r * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
   }
   end_list();
-  double given = gravity.done();
-  for (Fix *fix : compat::fixes_of_style(lmp, "ground/motion")) {
-    int dim;
-    given += *static_cast<double *>(fix->extract("work", dim));
-  }
-  double mine[3] = {moving, given, came};
+  double mine[3] = {moving, gravity.done() + shaking_work(lmp), came};
   double all[3];
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
   const double energy = all[0] - all[1];

@@ -12,12 +12,12 @@
 #include "atom.h"
 #include "comm.h"
 #include "contact_guards.h"
-#include "contact_history_owner.h"
 #include "energy_guard.h"
 #include "exchange_size.h"
 #include "lammps_compat.h"
 #include "memory.h"
 #include "pair.h"
+#include "pair_lists.h"
 #include "update.h"
 
 #include <algorithm>
@@ -34,8 +34,8 @@ static const std::string CALLER = "Pair gran/restitution";
 /* ---------------------------------------------------------------------- */
 
 FixContactHistory::FixContactHistory(LAMMPS *lmp, int narg, char **arg) :
-    FixNeighHistory(lmp, narg, arg), owner(nullptr), lists_new(true), lists_used(false),
-    continuation(lmp), known_as(nullptr), restart_extra(lmp)
+    FixNeighHistory(lmp, narg, arg), guards(nullptr), lists(nullptr), continuation(lmp),
+    lists_new(true), lists_used(false), known_as(nullptr), restart_extra(lmp)
 {
   comm_forward = 1;
   nevery = EnergyGuard::FINITE_EVERY;
@@ -55,8 +55,8 @@ FixContactHistory::~FixContactHistory()
 
 void FixContactHistory::pre_exchange()
 {
-  owner->run_guards().energy.end_list();
-  owner->run_guards().growth.end_list();
+  guards->energy.end_list();
+  guards->growth.end_list();
   store_contacts();
 }
 
@@ -64,7 +64,7 @@ void FixContactHistory::store_contacts()
 {
   if (!lists_used) return;
   lists_used = false;
-  owner->flag_histories();
+  lists->flag_histories();
   FixNeighHistory::pre_exchange();
   maxexchange = exchange_size(lmp, most_packed());
   std::copy_n(atom->tag, atom->nlocal, known_as);
@@ -80,8 +80,15 @@ void FixContactHistory::post_neighbor()
   pair->beyond_contact = 0;
   lists_new = true;
   continuation.look_ahead_of_new_balls();
-  owner->run_guards().energy.begin_list();
-  owner->run_guards().growth.begin_list();
+  guards->energy.begin_list();
+  guards->growth.begin_list();
+}
+
+bool FixContactHistory::take_new_lists()
+{
+  const bool told = lists_new;
+  lists_new = false;
+  return told;
 }
 
 void FixContactHistory::setup_post_neighbor()
@@ -171,23 +178,23 @@ void FixContactHistory::check_order() const
 
 void FixContactHistory::setup(int)
 {
-  owner->watch_energy();
+  watch_energy();
 }
 
 void FixContactHistory::end_of_step()
 {
   if (update->ntimestep % EnergyGuard::EVERY)
-    owner->run_guards().energy.check_finite();
+    guards->energy.check_finite();
   else
-    owner->watch_energy();
+    watch_energy();
 }
 
 void FixContactHistory::post_run()
 {
   FixNeighHistory::post_run();
   if (!continuation.forces_known()) continuation.keep_forces();
-  if (update->ntimestep % EnergyGuard::EVERY) owner->watch_energy();
-  owner->run_guards().report();
+  if (update->ntimestep % EnergyGuard::EVERY) watch_energy();
+  guards->report();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -196,12 +203,12 @@ void FixContactHistory::post_run()
 
 void FixContactHistory::reset_dt()
 {
-  if (update->whichflag == 1) owner->run_guards().check_balls();
+  if (update->whichflag == 1) guards->check_balls();
 }
 
 void FixContactHistory::initial_integrate(int)
 {
-  owner->run_guards().begin_step();
+  guards->begin_step();
   continuation.begin_step();
 }
 
@@ -239,7 +246,7 @@ void FixContactHistory::set_arrays(int i)
   FixNeighHistory::set_arrays(i);
   continuation.clear(i);
   known_as[i] = 0;
-  if (owner) owner->run_guards().energy.ball_came();
+  if (guards) guards->energy.ball_came();
 }
 
 int FixContactHistory::most_packed() const
@@ -301,7 +308,7 @@ int FixContactHistory::pack_restart(int i, double *buf)
 
 void FixContactHistory::unpack_restart(int i, int nth)
 {
-  const double *list = restart_extra.find(i, nth, 2 + STORED, 1 + dnum);
+  const double *list = restart_extra.record_of_ball(i, nth, 2 + STORED, 1 + dnum);
   if (!list) return;
   FixNeighHistory::unpack_restart(i, nth);
   known_as[i] = atom->tag[i];

@@ -17,6 +17,8 @@ FixStyle(CONTACT_HISTORY,FixContactHistory);
 #include "continuation.h"
 #include "restart_archive.h"
 
+#include <functional>
+
 namespace LAMMPS_NS {
 
 class FixContactHistory : public FixNeighHistory {
@@ -50,14 +52,20 @@ class FixContactHistory : public FixNeighHistory {
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
 
-  class ContactHistoryOwner *owner;    // the pair style, which sets it
+  // of the pair style, which sets them
+  class ContactGuards *guards;
+  const class PairLists *lists;
+  std::function<void()> watch_energy;    // every EnergyGuard::EVERY steps, before and at the end
 
-  bool lists_new;     // the neighbor list has been rebuilt
-  bool lists_used;    // its histories are newer than those stored by atom
+  // Whether the neighbor list is a new one, told once: the pair style's lists must be made anew. When these
+  // have been used, their histories are newer than those stored by atom.
+  bool take_new_lists();
+  void note_used() { lists_used = true; }
 
   Continuation continuation;
 
  private:
+  bool lists_new, lists_used;
   tagint
       *known_as;    // ID of each ball when the contacts were stored by atom; 0: it came after that
   RestartExtra restart_extra;

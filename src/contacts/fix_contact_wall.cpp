@@ -6,10 +6,11 @@
 #include "fix_contact_wall.h"
 
 #include "atom.h"
-#include "empty_group.h"
+#include "contact_energy.h"
 #include "error.h"
 #include "exchange_size.h"
 #include "group.h"
+#include "inserted_balls.h"
 #include "lammps_compat.h"
 #include "pair_gran_restitution.h"
 #include "update.h"
@@ -17,6 +18,7 @@
 #include <algorithm>
 
 using namespace LAMMPS_NS;
+using namespace Slope;
 
 static constexpr int VERSION = 6;    // of what restart files hold of a wall
 
@@ -101,12 +103,6 @@ void FixContactWall::pre_exchange()
   reserve();
 }
 
-void FixContactWall::post_run()
-{
-  store_contacts();
-  reserve();
-}
-
 void FixContactWall::reserve()
 {
   maxexchange = exchange_size(lmp, records.largest(atom->nlocal));
@@ -114,9 +110,9 @@ void FixContactWall::reserve()
 
 /* ---------------------------------------------------------------------- */
 
-const Slope::ContactLaw &FixContactWall::law_of(int type, int wall) const
+const ContactLaw &FixContactWall::law_of(int type, int wall) const
 {
-  const Slope::ContactLaw *law = pair->law(type, wall);
+  const ContactLaw *law = pair->law(type, wall);
   if (!law)    // a type that came after init(), by fix pour or fix deposit
     error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
                std::min(type, wall), std::max(type, wall), type, wall);
@@ -133,7 +129,60 @@ void FixContactWall::store_contacts()
   if (!contacts_in_lists) return;
   contacts_in_lists = false;
   records.clear();
-  take_contacts();
+  std::vector<int> left(atom->nlocal, 0);    // of a ball, in all lists; may be in several
+  for (const ContactList &l : lists)
+    for (size_t k = 0; k < l.entries.size(); k++)    // balls may have been deleted
+      if (l.entries[k].i < atom->nlocal) left[l.entries[k].i] += l.has_history(k);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (left[i] > 0) records.make(i, left[i]);
+  for (const ContactList &l : lists)
+    for (size_t k = 0; k < l.entries.size(); k++) {
+      const int i = l.entries[k].i;
+      if (i >= atom->nlocal || !l.has_history(k)) continue;
+      const int n = records.contacts(i) - left[i]--;
+      key_of(l.entries[k].j, records.key(i, n));
+      std::copy_n(l.histories[k], HISTORY, records.history(i, n));
+    }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixContactWall::find_touching(bool repeat, const std::string &remedy)
+{
+  const MovingBalls moving = pair->moving_balls();
+  const FixedPartners fixed = partners();
+  InitialOverlap initial(lmp, pair->guards);
+  for (ContactList &l : lists) {
+    if (repeat)
+      l.adopt_overlaps(moving, fixed, [&](const ContactEntry &e, double overlap) {
+        const Depth depth = depth_of(e, overlap);
+        initial.record(depth.overlap, depth.radius, atom->tag[e.i], atom->x[e.i], name_of(e.j));
+      });
+    l.find(repeat, moving, fixed);
+  }
+  if (repeat) initial.check(caller, remedy);
+}
+
+double FixContactWall::energy_beside(const FixedPartners &fixed) const
+{
+  const MovingBalls moving = pair->moving_balls();
+  double energy = 0.0;
+  for (size_t k = 0; k < lists.size(); k++)
+    if (!lists[k].entries.empty())
+      energy +=
+          Slope::elastic_energy(lists[k], law_of_list(k), update->dt, moving, fixed,
+                                [this](const ContactEntry &e, double overlap) {
+                                  const Depth depth = depth_of(e, overlap);
+                                  pair->guards.record_overlap(e.i, depth.overlap, depth.radius);
+                                });
+  return energy;
+}
+
+double FixContactWall::memory_usage()
+{
+  double bytes = records.memory_usage();
+  for (const ContactList &l : lists) bytes += l.memory_usage();
+  return bytes;
 }
 
 /* ----------------------------------------------------------------------
@@ -177,7 +226,7 @@ void FixContactWall::write_restart(FILE *fp)
   const bool in_use = contacts_in_lists;
   store_contacts();
   contacts_in_lists = in_use;    // the run continues with the lists
-  Slope::Archive archive(style, VERSION);
+  Archive archive(style, VERSION);
   restart_members(archive);
   write_archive(lmp, fp, caller, archive);
 }
@@ -185,12 +234,12 @@ void FixContactWall::write_restart(FILE *fp)
 void FixContactWall::restart(char *buf)
 {
   read_archive(lmp, caller, [&]() {
-    Slope::Archive archive(style, VERSION, buf);
+    Archive archive(style, VERSION, buf);
     restart_members(archive);
   });
 }
 
-void FixContactWall::restart_members(Slope::Archive &archive)
+void FixContactWall::restart_members(Archive &archive)
 {
   archive.same("numbers_of_a_contact", records.packed(1) - records.packed(0));
   archive_wall(archive);
@@ -206,7 +255,7 @@ int FixContactWall::pack_restart(int i, double *buf)
 void FixContactWall::unpack_restart(int i, int nth)
 {
   const int none = records.packed(0);
-  const double *list = restart_extra.find(i, nth, 1 + none, records.packed(1) - none);
+  const double *list = restart_extra.record_of_ball(i, nth, 1 + none, records.packed(1) - none);
   if (list) maxexchange = std::max(maxexchange, records.unpack(i, list + 1));
 }
 

@@ -9,7 +9,6 @@
 #include "fix_energy_ledger.h"
 
 #include "gravity_work.h"
-#include "lammps_compat.h"
 #include "pair_gran_restitution.h"
 #include "requirements.h"
 
@@ -23,11 +22,7 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using Slope::ContactWorks;
-
-static inline double dot(const double *a, const double *b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+using Slope::Vector;
 
 /* ---------------------------------------------------------------------- */
 
@@ -62,7 +57,7 @@ void FixEnergyLedger::init()
 
 void FixEnergyLedger::setup(int)
 {
-  shaken = shaking();
+  shaken = shaking_work(lmp);
 }
 
 /* ----------------------------------------------------------------------
@@ -71,31 +66,18 @@ void FixEnergyLedger::setup(int)
 
 double FixEnergyLedger::kinetic() const
 {
+  const double half = 0.5 * update->dt;
+  auto later = [half](const Vector &v, const Vector &f, double m) -> Vector {
+    return {v.x + half * f.x / m, v.y + half * f.y / m, v.z + half * f.z / m};
+  };
   double energy = 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
     const double m = atom->rmass[i], r = atom->radius[i], inertia = 0.4 * m * r * r;
-    double v[3], w[3];
-    for (int d = 0; d < 3; d++) {
-      v[d] = atom->v[i][d] + 0.5 * update->dt * atom->f[i][d] / m;
-      w[d] = atom->omega[i][d] + 0.5 * update->dt * atom->torque[i][d] / inertia;
-    }
+    const Vector v = later(vectors(atom->v)[i], vectors(atom->f)[i], m);
+    const Vector w = later(vectors(atom->omega)[i], vectors(atom->torque)[i], inertia);
     energy += 0.5 * (m * dot(v, v) + inertia * dot(w, w));
   }
   return energy;
-}
-
-/* ----------------------------------------------------------------------
-   work of fixes ground/motion so far
-------------------------------------------------------------------------- */
-
-double FixEnergyLedger::shaking() const
-{
-  double work = 0.0;
-  for (Fix *fix : compat::fixes_of_style(lmp, "ground/motion")) {
-    int dim;
-    work += *static_cast<double *>(fix->extract("work", dim));
-  }
-  return work;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -105,7 +87,7 @@ void FixEnergyLedger::end_of_step()
   comm->forward_comm();    // the velocities of the end of the step to the ghosts
   const ContactWorks::Sum c =
       PairGranRestitution::of(lmp)->works.work(update->dt, vectors(atom->v), vectors(atom->omega));
-  const double moving = kinetic(), motion = shaking();
+  const double moving = kinetic(), motion = shaking_work(lmp);
   const bigint before = balls;
   bigint mine = atom->nlocal;    // LAMMPS' stand-in for MPI takes no const
   MPI_Allreduce(&mine, &balls, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -113,8 +95,8 @@ void FixEnergyLedger::end_of_step()
   if (begun) {
     double on_places = 0.0, on_spins = 0.0;
     for (int i = 0; i < atom->nlocal; i++) {
-      on_places += update->dt * dot(atom->f[i], atom->v[i]);
-      on_spins += update->dt * dot(atom->torque[i], atom->omega[i]);
+      on_places += update->dt * dot(vectors(atom->f)[i], vectors(atom->v)[i]);
+      on_spins += update->dt * dot(vectors(atom->torque)[i], vectors(atom->omega)[i]);
     }
     const double fallen =
         update->dt * GravityWork(lmp).weighed(atom->v);    // 0 of balls that fix freeze holds

@@ -47,7 +47,6 @@ class FixEnergyLedger : public Fix {
   double item[NITEM];    // this rank's, J
 
   double kinetic() const;
-  double shaking() const;
 };
 
 }    // namespace LAMMPS_NS

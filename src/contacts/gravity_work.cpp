@@ -15,6 +15,24 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
+const double *LAMMPS_NS::acceleration_of(Fix *gravity)
+{
+  int dim;
+  return static_cast<double *>(gravity->extract("gvec", dim));
+}
+
+double LAMMPS_NS::shaking_work(LAMMPS *lmp)
+{
+  double work = 0.0;
+  for (Fix *fix : compat::fixes_of_style(lmp, "ground/motion")) {
+    int dim;
+    work += *static_cast<double *>(fix->extract("work", dim));
+  }
+  return work;
+}
+
+/* ---------------------------------------------------------------------- */
+
 void GravityWork::start()
 {
   sum = 0.0;
@@ -30,8 +48,7 @@ double GravityWork::weighed(double **vectors) const
 {
   double found = 0.0;
   for (Fix *fix : compat::fixes_of_style(lmp, "gravity")) {
-    int dim;
-    const double *g = static_cast<double *>(fix->extract("gvec", dim));
+    const double *g = acceleration_of(fix);
     for (int i = 0; i < atom->nlocal; i++) {
       if (!(atom->mask[i] & fix->groupbit)) continue;
       const double *a = vectors[i];

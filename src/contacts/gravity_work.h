@@ -10,6 +10,11 @@
 
 namespace LAMMPS_NS {
 
+// what fixes tell of themselves: the acceleration of a fix gravity, m/s2; the work of all fixes ground/motion
+// so far on this rank's balls, J
+const double *acceleration_of(class Fix *gravity);
+double shaking_work(class LAMMPS *);
+
 // Work of gravity on the balls during a run, for the energy guard: their weights times their ways, which need neither heights
 // nor image flags. Between two neighbor lists no ball comes, goes or is wrapped, so that the places at both ends are enough;
 // where gravity or its group varies, each step counts with the velocities of its middle, with which balls move.

@@ -7,7 +7,7 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "contact_geometry.h"
+#include "contact_energy.h"
 #include "contact_holder.h"
 #include "error.h"
 #include "fix_contact_history.h"
@@ -213,7 +213,11 @@ void PairGranRestitution::init_style()
     fix_history = static_cast<FixContactHistory *>(modify->replace_fix(
         dummy_id, fmt::format("{} all CONTACT_HISTORY {}", history_id, HISTORY), 1));
     fix_history->pair = this;
-    fix_history->owner = this;
+    fix_history->guards = &guards;
+    fix_history->lists = &lists;
+    fix_history->watch_energy = [this]() {
+      watch_energy();
+    };
   }
   restart_drops.check();
 
@@ -346,9 +350,8 @@ void PairGranRestitution::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
   const bool repeat = update->setupflag;    // the forces of the last step are found once more
-  if (repeat || fix_history->lists_new)
+  if (fix_history->take_new_lists() || repeat)
     lists.build(*list, *fix_history, freeze_group_bit, sizes_vary, guards);
-  fix_history->lists_new = false;
 
   if (!repeat) {
     guards.energy.in_step();
@@ -378,7 +381,7 @@ void PairGranRestitution::compute(int eflag, int vflag)
     law = &its;
     l.apply(its, update->dt, repeat, balls, partners, visited ? &tally : nullptr);
   });
-  fix_history->lists_used = true;
+  fix_history->note_used();
 }
 
 /* ----------------------------------------------------------------------

@@ -16,7 +16,6 @@ PairStyle(gran/restitution,PairGranRestitution);
 
 #include "ball_states.h"
 #include "contact_guards.h"
-#include "contact_history_owner.h"
 #include "contact_table.h"
 #include "contact_works.h"
 #include "pair_lists.h"
@@ -27,7 +26,7 @@ PairStyle(gran/restitution,PairGranRestitution);
 
 namespace LAMMPS_NS {
 
-class PairGranRestitution : public Pair, public ContactHistoryOwner {
+class PairGranRestitution : public Pair {
  public:
   explicit PairGranRestitution(class LAMMPS *);
   ~PairGranRestitution() override;
@@ -71,11 +70,6 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   ContactGuards guards;
   Slope::ContactWorks works;    // of fix energy/ledger, walls included
 
-  // for fix CONTACT_HISTORY
-  void flag_histories() const override { lists.flag_histories(); }
-  void watch_energy() override;
-  ContactGuards &run_guards() override { return guards; }
-
  protected:
   ContactTable table;
   PairLists lists;
@@ -87,6 +81,7 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   RestartDrops restart_drops;
 
   void allocate();
+  void watch_energy();
 };
 
 }    // namespace LAMMPS_NS

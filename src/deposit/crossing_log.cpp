@@ -6,6 +6,7 @@
 
 #include "crossing_log.h"
 
+#include "deposit_summary.h"
 #include "yaml_text.h"
 
 #include <algorithm>
@@ -16,7 +17,6 @@
 using namespace Slope;
 using namespace Slope::yaml;
 
-static constexpr double SHARES[] = {0.5, 0.9, 0.95, 0.99};
 static constexpr double ROUNDING = 1.0e-12;    // 0.95 of 20 is the 19th
 
 /* ---------------------------------------------------------------------- */

@@ -22,7 +22,6 @@ using Slope::DepositSummary;
 using Slope::Histogram;
 
 static constexpr double SLOWEST = 1.0e-9;    // of the largest speed: slower is 0 in the median
-static constexpr double SHARES[] = {0.5, 0.9, 0.95, 0.99};
 
 enum { X, Y, Z };
 
@@ -204,7 +203,7 @@ std::vector<DepositSummary::Quantile> DepositBalls::quantiles(const double *plac
   MPI_Allreduce(mine, most, 3, MPI_DOUBLE, MPI_MAX, world);
   std::vector<DepositSummary::Quantile> found;
   if (most[1] == -HUGE_VAL) {    // no ball is left: nothing is known
-    for (const double share : SHARES) found.push_back({share, {HUGE_VAL, HUGE_VAL}});
+    for (const double share : Slope::SHARES) found.push_back({share, {HUGE_VAL, HUGE_VAL}});
     return found;
   }
 
@@ -222,7 +221,7 @@ std::vector<DepositSummary::Quantile> DepositBalls::quantiles(const double *plac
 
   double left = 0.0;
   for (const double weight : distances.weights) left += weight;
-  for (const double share : SHARES) {
+  for (const double share : Slope::SHARES) {
     const double of_left = share * (left + lost) / left;
     if (of_left <= 1.0 + BALANCE)    // all that is left, but for rounding
       found.push_back({share, {distances.quantile(of_left), -angles.quantile(of_left)}});

@@ -257,7 +257,7 @@ int DepositLeft::pack_restart(int i, double *buf) const
 
 void DepositLeft::unpack_restart(int i, int nth)
 {
-  if (const double *from = extra.find(i, nth, RESTART, 0)) unpack(i, from + 1);
+  if (const double *from = extra.record_of_ball(i, nth, RESTART, 0)) unpack(i, from + 1);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -119,14 +119,6 @@ void DepositRasters::take_snapshot(double time, double fraction)
 
 /* ---------------------------------------------------------------------- */
 
-double DepositRasters::at(Name name, int i, int j) const
-{
-  const Block *block = blocks.find(i / SIDE, j / SIDE);
-  return block ? block->values[name][Block::index(i, j)] : UNTOUCHED[name];
-}
-
-/* ---------------------------------------------------------------------- */
-
 void DepositRasters::row(Name name, int j, double *values) const
 {
   for (int i = 0; i < cells.n[X]; i += SIDE) {

@@ -40,7 +40,6 @@ class DepositRasters {
   DepositRasters();
 
   void create(const PlanGrid &);
-  const PlanGrid &grid() const { return cells; }
 
   // heights of the ground, row by row from the south, NaN where there is none
   void set_base(std::vector<double> heights);
@@ -61,7 +60,6 @@ class DepositRasters {
 
   // --- what the cells hold ---
 
-  double at(Name, int i, int j) const;
   void row(Name, int j, double *values) const;    // of all columns
   double largest(Name) const;                     // of those that begin with 0
   double bytes() const;

@@ -9,12 +9,14 @@
 #include "constants.h"
 #include "deposit_balls.h"
 #include "deposit_options.h"
+#include "gravity_work.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
 #include "pair_gran_restitution.h"
 #include "region_columns.h"
 #include "region_surface.h"
 #include "region_terrain.h"
+#include "style_argument.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -31,9 +33,7 @@
 using namespace LAMMPS_NS;
 
 static const char *const CALLER = "Fix deposit/grid terrain";
-static constexpr double UNBOUNDED = 1.0e19;          // LAMMPS writes INF as 1e20
 static constexpr double ASTRAY = 0.05;               // of the balls may lie far from the body
-static constexpr double SEARCH_STEPS = 1000.0;       // through a part of an unknown style
 static constexpr double LEAST = 1.0, MOST = 10.0;    // bulk factor: volume of a body / of its balls
 
 enum { X, Y, Z };
@@ -224,19 +224,14 @@ DepositRelease::Body DepositRelease::find_body(const Mass &mass) const
 Region *DepositRelease::body() const
 {
   const std::string &id = options.body;
-  Region *region = compat::find_region(lmp, id);
-  if (!region) error->all(FLERR, "Fix deposit/grid bulk region {} does not exist", id);
-  region->init();
-  if (region->dynamic_check())
-    error->all(FLERR, "Fix deposit/grid bulk region {} must not move, got one that moves or varies",
-               id);
+  Region *region = region_argument(lmp, "Fix deposit/grid bulk", id);
   if (region->openflag)
     error->all(FLERR, "Fix deposit/grid bulk region {} must have no open faces, got some", id);
 
   const double ends[6] = {region->extent_xlo, region->extent_xhi, region->extent_ylo,
                           region->extent_yhi, region->extent_zlo, region->extent_zhi};
   bool bounded = region->bboxflag;
-  for (const double end : ends) bounded = bounded && std::fabs(end) < UNBOUNDED;
+  for (const double end : ends) bounded = bounded && std::fabs(end) < RegionSurface::UNBOUNDED;
   if (!bounded)
     error->all(
         FLERR,
@@ -251,7 +246,8 @@ Region *DepositRelease::body() const
 DepositRelease::Body DepositRelease::integrate(Region *region) const
 {
   const double zlo = region->extent_zlo, zhi = region->extent_zhi;
-  const auto columns = RegionColumns::of(lmp, region, {zlo, zhi, (zhi - zlo) / SEARCH_STEPS});
+  const auto columns =
+      RegionColumns::of(lmp, region, {zlo, zhi, (zhi - zlo) / RegionSurface::STEPS});
   Slope::Intervals found;
   double longest = 0.0;    // of the columns of this rank
   auto length = [&](double x, double y) {
@@ -305,7 +301,7 @@ double DepositRelease::stiffness_number(const Released &released) const
       const Slope::ContactLaw *law = pair->law(i, j);
       if (!law || largest[i] == 0.0 || largest[j] == 0.0) continue;
       const double d = std::max(largest[i], largest[j]);
-      softest = std::min(softest, law->spring(0.5 * largest[i], 0.5 * largest[j]).kn / d);
+      softest = std::min(softest, law->kn / d);
     }
   const double weight = all / released.body * gravity(groups) * released.thick;
   return softest < HUGE_VAL && weight > 0.0 ? softest / weight : 0.0;
@@ -322,8 +318,7 @@ double DepositRelease::gravity(int mine) const
     int pulls_mine = (mine & fix->groupbit) != 0, pulls;
     MPI_Allreduce(&pulls_mine, &pulls, 1, MPI_INT, MPI_MAX, world);
     if (!pulls) continue;
-    int dim;
-    const double *g = static_cast<double *>(fix->extract("gvec", dim));
+    const double *g = acceleration_of(fix);
     for (int d = 0; d < 3; d++) sum[d] += g[d];
   }
   return sqrt(sum[X] * sum[X] + sum[Y] * sum[Y] + sum[Z] * sum[Z]);

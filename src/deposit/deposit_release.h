@@ -6,6 +6,7 @@
 #ifndef SLOPE_DEPOSIT_RELEASE_H
 #define SLOPE_DEPOSIT_RELEASE_H
 
+#include "deposit_summary.h"
 #include "pointers.h"
 
 #include <string>
@@ -17,20 +18,8 @@ namespace LAMMPS_NS {
 // methods are collective; an invalid release ends the run with one line.
 class DepositRelease : protected Pointers {
  public:
-  struct Mass {    // of all ranks; numbers only, for restart files
-    double number;
-    double solid;     // volume of the balls
-    double x, y;      // centre of mass
-    double top[3];    // place of the highest ball, of several the one with the lowest ID
-  };
-  struct Released {
-    Mass mass;
-    double volume;    // bulk
-    double body;      // volume of the region that the balls stand for; 0 without
-    double thick;     // largest vertical thickness of it
-    double front;     // plan distance of the farthest ball from the top
-    double stiffness_number;
-  };
+  typedef Slope::DepositSummary::Released Released;
+  typedef Released::Mass Mass;
 
   DepositRelease(class LAMMPS *, const class DepositBalls &, const class DepositOptions &);
 

@@ -26,8 +26,6 @@ typedef DepositResults Result;
 
 static const std::string LEFT = ".left.csv";    // the balls that left the ground
 
-enum { X, Y, Z };
-
 /* ---------------------------------------------------------------------- */
 
 DepositReport::DepositReport(LAMMPS *lmp, const std::string &id, const DepositOptions &options_in,
@@ -110,7 +108,7 @@ void DepositReport::write(const std::string &why, const DepositResults &results,
 DepositSummary DepositReport::summary(const std::string &why, const DepositResults &results) const
 {
   const DepositRelease::Released &released = results.released;
-  const double *top = released.mass.top, *value = results.vector;
+  const double *value = results.vector;
   DepositSummary s = DepositSummary();
   s.slope_version = SLOPE_VERSION;
   s.lammps_version = lmp->version;
@@ -121,18 +119,16 @@ DepositSummary DepositReport::summary(const std::string &why, const DepositResul
   s.ranks = comm->nprocs;
   s.reason = why;
   s.grid = options.grid;
-  s.release = {
-      released.mass.number, released.mass.solid,      options.body, released.body, balls.bulk(),
-      released.thick,       released.stiffness_number};
+  s.released = released;
+  s.region = options.body;
+  s.bulk_factor = balls.bulk();
   s.present = results.present;
   s.lost = value[Result::NLOST];
-  s.volume = {value[Result::RELEASED], value[Result::ON_GRID], value[Result::OFF_GRID],
-              value[Result::LOST], value[Result::RESIDUAL]};
-  s.travel = {{top[X], top[Y], top[Z]},
-              released.front,
-              value[Result::CENTROID],
+  s.volume = {value[Result::ON_GRID], value[Result::OFF_GRID], value[Result::LOST],
+              value[Result::RESIDUAL]};
+  s.travel = {value[Result::CENTROID],
               {value[Result::FRONT], value[Result::REACH]},
-              balls.quantiles(top, value[Result::LOST])};
+              balls.quantiles(released.mass.top, value[Result::LOST])};
 
   double moving;
   s.motion = balls.motion(options.motion, moving);
@@ -185,10 +181,10 @@ void DepositReport::archive(Slope::Archive &archive)
 void DepositReport::add_lost(DepositSummary &s) const
 {
   if (s.lost == 0.0) return;
-  const std::string text =
-      fmt::format("Fix deposit/grid {}: the released volume must stay in the box: {:.3g} % of it "
-                  "left, in {:.0f} of {:.0f} balls, and lies beyond what is written here; use a "
-                  "larger box",
-                  fix_id, 100.0 * s.volume.lost / s.volume.released, s.lost, s.release.balls);
+  const std::string text = fmt::format(
+      "Fix deposit/grid {}: the released volume must stay in the box: {:.3g} % of it "
+      "left, in {:.0f} of {:.0f} balls, and lies beyond what is written here; use a "
+      "larger box",
+      fix_id, 100.0 * s.volume.lost / s.released.volume, s.lost, s.released.mass.number);
   s.warnings.insert(s.warnings.begin(), text);
 }

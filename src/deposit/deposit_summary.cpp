@@ -14,7 +14,7 @@ using namespace Slope::yaml;
 
 /* ---------------------------------------------------------------------- */
 
-double DepositSummary::Release::from_cubic() const
+double DepositSummary::from_cubic() const
 {
   return bulk_factor / SIMPLE_CUBIC - 1.0;
 }
@@ -47,7 +47,7 @@ void DepositSummary::write_run(std::string &s) const
   line(s, "time", real(time));
   line(s, "dt", real(dt));
   line(s, "ranks", std::to_string(ranks));
-  line(s, "bulk_factor", real(release.bulk_factor));
+  line(s, "bulk_factor", real(bulk_factor));
   s += "grid:\n";
   line(s, "  cell", real(grid.cell));
   line(s, "  columns", std::to_string(grid.n[0]));
@@ -61,24 +61,24 @@ void DepositSummary::write_run(std::string &s) const
 
 void DepositSummary::write_release(std::string &s) const
 {
-  const bool body = !release.region.empty();
+  const bool body = !region.empty();
   s += "release:  # from_cubic: bulk_factor / (6/pi) - 1; ball_volume: solid\n";
-  line(s, "  region", body ? quoted(release.region) : "null");
-  line(s, "  body_volume", body ? real(release.body_volume) : "null");
-  line(s, "  ball_volume", real(release.ball_volume));
-  line(s, "  balls", count(release.balls));
-  line(s, "  bulk_factor", real(release.bulk_factor));
-  line(s, "  from_cubic", real(release.from_cubic()));
-  line(s, "  thickness", body ? real(release.thickness) : "null");
+  line(s, "  region", body ? quoted(region) : "null");
+  line(s, "  body_volume", body ? real(released.body) : "null");
+  line(s, "  ball_volume", real(released.mass.solid));
+  line(s, "  balls", count(released.mass.number));
+  line(s, "  bulk_factor", real(bulk_factor));
+  line(s, "  from_cubic", real(from_cubic()));
+  line(s, "  thickness", body ? real(released.thick) : "null");
   line(s, "  stiffness_number",
-       (release.stiffness_number > 0.0 ? real(release.stiffness_number) : "null") +
+       (released.stiffness_number > 0.0 ? real(released.stiffness_number) : "null") +
            "  # kn / (density of the ground x gravity x thickness x diameter)");
   s += "balls:\n";
-  line(s, "  released", count(release.balls));
+  line(s, "  released", count(released.mass.number));
   line(s, "  present", count(present));
   line(s, "  lost", count(lost));
   s += "volume:  # bulk; released = on_grid + off_grid + lost + residual\n";
-  line(s, "  released", real(volume.released));
+  line(s, "  released", real(released.volume));
   line(s, "  on_grid", real(volume.on_grid));
   line(s, "  off_grid", real(volume.off_grid));
   line(s, "  lost", real(volume.lost));
@@ -90,10 +90,10 @@ void DepositSummary::write_release(std::string &s) const
 void DepositSummary::write_travel(std::string &s) const
 {
   s += "travel:  # in plan, from top, the highest released ball; front: of the farthest ball\n";
-  line(s, "  top",
-       "[" + real(travel.top[0]) + ", " + real(travel.top[1]) + ", " + real(travel.top[2]) + "]");
+  const double *top = released.mass.top;
+  line(s, "  top", "[" + real(top[0]) + ", " + real(top[1]) + ", " + real(top[2]) + "]");
   line(s, "  front", real(travel.farthest.distance));
-  line(s, "  front_at_release", real(travel.front_at_release));
+  line(s, "  front_at_release", real(released.front));
   line(s, "  centroid", real(travel.centroid));
   line(s, "  reach_angle", real(travel.farthest.angle));
   line(s, "  farthest",

@@ -15,6 +15,8 @@
 
 namespace Slope {
 
+static constexpr double SHARES[] = {0.5, 0.9, 0.95, 0.99};    // that quantiles are of
+
 // Content of PREFIX.summary.yaml. Units are those of the run, angles in degrees,
 // volumes are bulk unless stated otherwise.
 struct DepositSummary {
@@ -32,19 +34,28 @@ struct DepositSummary {
 
   // --- what was released ---
 
-  struct Release {
-    double balls, ball_volume;    // ball_volume: solid
-    std::string region;           // empty: the bulk factor was given
-    double body_volume, bulk_factor;
-    double thickness, stiffness_number;    // of the body, largest; of its contacts, K; 0: unknown
-    double from_cubic() const;             // bulk_factor / (6/pi) - 1
-  } release;
+  struct Released {    // numbers only, for restart files
+    struct Mass {
+      double number;
+      double solid;     // volume of the balls
+      double x, y;      // centre of mass
+      double top[3];    // place of the highest ball, of several the one with the lowest ID
+    } mass;
+    double volume;              // bulk
+    double body;                // volume of the region that the balls stand for; 0 without
+    double thick;               // largest vertical thickness of it
+    double front;               // plan distance of the farthest ball from the top
+    double stiffness_number;    // K of the contacts; 0: unknown
+  } released;
+  std::string region;    // that body, empty: the bulk factor was given
+  double bulk_factor;
+  double from_cubic() const;    // bulk_factor / (6/pi) - 1
 
   // --- where it is ---
 
   double present, lost;    // numbers of balls
   struct Volume {
-    double released, on_grid, off_grid, lost, residual;
+    double on_grid, off_grid, lost, residual;
   } volume;
 
   struct Reach {
@@ -55,7 +66,7 @@ struct DepositSummary {
     Reach reach;
   };
   struct Travel {
-    double top[3], front_at_release, centroid;
+    double centroid;
     Reach farthest;
     std::vector<Quantile> quantiles;
   } travel;

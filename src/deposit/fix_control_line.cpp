@@ -11,8 +11,8 @@
 
 #include "atomic_file.h"
 #include "constants.h"
-#include "empty_group.h"
 #include "fix_deposit_grid.h"
+#include "inserted_balls.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
 #include "rank_zero.h"

@@ -9,7 +9,9 @@
 #include "error.h"
 #include "lammps_compat.h"
 #include "region.h"
+#include "scattered_sampler.h"
 #include "sunk_surface.h"
+#include "surface_sampler.h"
 
 #include <algorithm>
 #include <cmath>
@@ -136,6 +138,38 @@ void BallGround::check_floor() const
                 : "the simulation box",
       a.sink));
 }
+
+/* ---------------------------------------------------------------------- */
+
+std::unique_ptr<Slope::BallSampler> BallGround::new_sampler() const
+{
+  std::unique_ptr<Slope::BallSampler> made;
+  const double half = 0.25 * (arguments.diameter + arguments.smallest);
+  if (!arguments.scattered) {
+    made.reset(new Slope::SurfaceSampler(grid(), half, surface()));
+    return made;
+  }
+  const std::vector<double> all = spacings();
+  const bool several = all.size() > 1;
+  auto scattered =
+      new Slope::ScatteredSampler(grid(), several ? surface_of(all[0]) : surface(), arguments.seed);
+  made.reset(scattered);
+  for (size_t k = 1; k < all.size(); k++) scattered->add(all[k], surface_of(all[k]));
+  return made;
+}
+
+void BallGround::sample(Slope::BallSampler &from, int tile, std::vector<Slope::PlacedBall> &balls,
+                        Slope::SurfaceCounts &counts) const
+{
+  const size_t before = balls.size();
+  from.sample(tile, balls, counts);
+  for (size_t k = before; k < balls.size(); k++) {
+    turn(balls[k].x, balls[k].y);
+    balls[k].zone = zone(balls[k].x, balls[k].y);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
 
 bool BallGround::height(double x, double y, double &z) const
 {

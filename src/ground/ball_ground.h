@@ -78,22 +78,23 @@ class BallGround : protected Pointers {
   // All ranks: find the sunk surfaces. false if the plan is empty. May throw.
   bool build();
 
-  // The plan grid and the surface as it sees it: where the grid is turned, in coordinates that turn with it,
-  // to be turned back.
-  Slope::NodeGrid grid() const;
-  void turn(double &x, double &y, double direction = 1.0) const;    // -1: to those of the grid
+  // which balls there are; any rank alone. sample(): those of a tile, appended
+  std::unique_ptr<Slope::BallSampler> new_sampler() const;
+  void sample(Slope::BallSampler &, int tile, std::vector<Slope::PlacedBall> &,
+              Slope::SurfaceCounts &) const;
 
   // columns of ball centres; any rank alone
   bool keep(double x, double y) const;
   int zone(double x, double y) const;    // from 1, 0: in none
-  Slope::GroundHeights surface() const;
-  Slope::GroundHeights
-  looked_at() const;    // the same for marks: an upper boundary before it is sunk
 
-  // spacings of the balls, first that of what is in no zone; the surface where it is one of these
+  // The plan grid, and for marks the surface as it sees it, an upper boundary before it is sunk: where the grid
+  // is turned, in coordinates that turn with it
+  Slope::NodeGrid grid() const;
+  Slope::GroundHeights looked_at() const;
+
+  // spacings of the balls, first that of what is in no zone
   std::vector<double> spacings() const;
   double spacing(double x, double y) const;
-  Slope::GroundHeights surface_of(double spacing) const;
 
   // whether the regions are those of the constructor; if not, which one is not
   bool stands(std::string &changed) const;
@@ -111,6 +112,9 @@ class BallGround : protected Pointers {
   Slope::NodeGrid plan;
 
   void find_bodies();
+  void turn(double &x, double &y, double direction = 1.0) const;    // -1: to those of the grid
+  Slope::GroundHeights surface() const;
+  Slope::GroundHeights surface_of(double spacing) const;    // where it is this one
   bool height(double x, double y, double &z) const;
   bool scar(double x, double y, double &z) const;
   void check_floor() const;

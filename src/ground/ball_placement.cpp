@@ -16,9 +16,8 @@
 #include "number_rows.h"
 #include "rank_zero.h"
 #include "requirements.h"
-#include "scattered_sampler.h"
 #include "style_argument.h"
-#include "surface_sampler.h"
+#include "surface_closer.h"
 #include "text_file.h"
 #include "update.h"
 
@@ -27,10 +26,10 @@
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
+using Slope::FARTHEST;
 using Slope::PlacedBall;
 using Slope::SurfaceCounts;
 
-static constexpr double MAX_BALLS = 2147483647.0;
 static constexpr double COUNTED = 131072.0;     // plan nodes of a ground that is counted at once
 static constexpr double TAKES = 32.0;           // a scattered ball to make, in plan nodes
 static constexpr int MARKS = 4096;              // columns that tell one ground from another
@@ -47,10 +46,10 @@ static bigint common_divisor(bigint a, bigint b)
   return b == 0 ? a : common_divisor(b, a % b);
 }
 
-// places from 0 to 1 that repeat no grid: multiples of an irrational number
-static double part(double irrational, bigint k)
+// places from 0 to 1 that repeat no grid
+static double part(bigint k)
 {
-  const double turns = irrational * static_cast<double>(k + 1);
+  const double turns = Slope::GOLDEN * static_cast<double>(k + 1);
   return turns - std::floor(turns);
 }
 
@@ -124,10 +123,10 @@ void BallPlacement::place_surface()
   on_all_ranks(lmp, caller, [&]() {
     if (!ground->build()) return;
     nodes = Slope::count_nodes(ground->grid());
-    if (!(nodes < MAX_BALLS))
+    if (!(nodes < Slope::MOST_COUNTED))
       throw std::runtime_error(fmt::format(
           "spacing must give fewer than 2^31 balls, got {:.3g} with {}", nodes, arguments.spacing));
-    if (nodes > 0.0) sampler = new_sampler();
+    if (nodes > 0.0) sampler = ground->new_sampler();
   });
   if (comm->me == 0 && !arguments.scattered) warn_of_spacing();
   if (!any())
@@ -145,25 +144,6 @@ void BallPlacement::place_surface()
   if (writing) write_file(text, counted);
 }
 
-std::unique_ptr<Slope::BallSampler> BallPlacement::new_sampler() const
-{
-  std::unique_ptr<Slope::BallSampler> made;
-  const double half = 0.25 * (arguments.diameter + arguments.smallest);
-  if (!arguments.scattered) {
-    made.reset(new Slope::SurfaceSampler(ground->grid(), half, ground->surface()));
-    return made;
-  }
-  const std::vector<double> spacings = ground->spacings();
-  const bool several = spacings.size() > 1;
-  auto scattered = new Slope::ScatteredSampler(
-      ground->grid(), several ? ground->surface_of(spacings[0]) : ground->surface(),
-      arguments.seed);
-  made.reset(scattered);
-  for (size_t k = 1; k < spacings.size(); k++)
-    scattered->add(spacings[k], ground->surface_of(spacings[k]));
-  return made;
-}
-
 /* ----------------------------------------------------------------------
    balls on a plan grid, and more where the surface is steep: how far a point of the surface may be
    from the nearest ball, from the plan grid alone on level ground, with extra balls where it is
@@ -176,12 +156,11 @@ void BallPlacement::warn_of_spacing() const
   const double contact = 0.5 * (arguments.diameter + arguments.smallest), half = 0.5 * contact;
   const double spacing = arguments.spacing;
   const bool leaks = spacing / std::sqrt(2.0) >= contact;
-  const double steep = Slope::cover_radius(spacing, half) + Slope::sampling_slack(half);
-  if (leaks || steep >= contact)
+  if (leaks || spacing >= Slope::widest_spacing(half))
     error->warning(
         FLERR, "{} spacing {} lets a ball of diameter {} through {}: spacing must be < {:.4g}",
         caller, spacing, arguments.smallest, leaks ? "even on level ground" : "on steep ground",
-        contact * (leaks ? std::sqrt(2.0) : 1.299));
+        leaks ? contact * std::sqrt(2.0) : Slope::widest_spacing(half));
 }
 
 /* ----------------------------------------------------------------------
@@ -196,17 +175,6 @@ Slope::TilePlan BallPlacement::tiles() const
   return plan;
 }
 
-void BallPlacement::sample(Slope::BallSampler &from, int tile, std::vector<PlacedBall> &balls,
-                           SurfaceCounts &counts) const
-{
-  const size_t before = balls.size();
-  from.sample(tile, balls, counts);
-  for (size_t k = before; k < balls.size(); k++) {
-    ground->turn(balls[k].x, balls[k].y);
-    balls[k].zone = ground->zone(balls[k].x, balls[k].y);
-  }
-}
-
 void BallPlacement::make(int tile, std::vector<PlacedBall> &balls)
 {
   if (!sampler) {
@@ -219,7 +187,7 @@ void BallPlacement::make(int tile, std::vector<PlacedBall> &balls)
                changed);
   SurfaceCounts unused;
   try {
-    sample(*sampler, tile, balls, unused);
+    ground->sample(*sampler, tile, balls, unused);
   } catch (std::exception &e) {
     error->one(FLERR, "{}: {}", caller, e.what());
   }
@@ -230,16 +198,7 @@ void BallPlacement::forget()
   if (sampler) sampler->forget();
 }
 
-/* ----------------------------------------------------------------------
-   the whole ground: each rank makes some rows of tiles, and forgets them
-------------------------------------------------------------------------- */
-
-void BallPlacement::my_rows(int &first, int &end) const
-{
-  const bigint rows = sampler->tiles().ny;
-  first = static_cast<int>(rows * comm->me / comm->nprocs);
-  end = static_cast<int>(rows * (comm->me + 1) / comm->nprocs);
-}
+/* ---------------------------------------------------------------------- */
 
 // does any node have a ball? Asked of a few tiles of each rank first, then of more; inside a region there
 // are none beyond its box. All of a large ground may take minutes.
@@ -268,7 +227,7 @@ bool BallPlacement::any() const
   double said = MPI_Wtime();
   for (int some = 16; !found && left; some *= 8) {
     on_all_ranks(lmp, caller, [&]() {
-      const auto looks = new_sampler();
+      const auto looks = ground->new_sampler();
       for (int k = 0; k < some && at < tiles && !mine; k++, at += comm->nprocs) {
         const bigint tile = at * step % tiles;
         mine = looks->has_balls(
@@ -297,25 +256,37 @@ bigint BallPlacement::count()
   return counted;
 }
 
+/* ----------------------------------------------------------------------
+   the whole ground: each rank makes some rows of tiles, appended; after_tile(whether its row ends with it) may
+   take and forget them
+------------------------------------------------------------------------- */
+
+template <typename Use>
+SurfaceCounts BallPlacement::make_share(std::vector<PlacedBall> &balls, Use after_tile) const
+{
+  SurfaceCounts counts;
+  on_all_ranks(lmp, caller, [&]() {
+    const auto share = ground->new_sampler();
+    const Slope::TilePlan plan = share->tiles();
+    const bigint rows = plan.ny;
+    const int end = static_cast<int>(rows * (comm->me + 1) / comm->nprocs) * plan.nx;
+    for (int tile = static_cast<int>(rows * comm->me / comm->nprocs) * plan.nx; tile < end;) {
+      ground->sample(*share, tile++, balls, counts);
+      after_tile(tile % plan.nx == 0);
+    }
+  });
+  return counts;
+}
+
 SurfaceCounts BallPlacement::count_all(std::vector<std::string> *text) const
 {
-  SurfaceCounts mine;
-  on_all_ranks(lmp, caller, [&]() {
-    const auto share = new_sampler();
-    std::vector<PlacedBall> balls;
-    int first, end;
-    my_rows(first, end);
-    const int across = share->tiles().nx;
-    for (int row = first; row < end; row++) {
-      for (int i = 0; i < across; i++) {
-        if (!text) balls.clear();
-        sample(*share, row * across + i, balls, mine);
-      }
-      if (!text) continue;
-      Slope::in_order(balls);
-      for (const PlacedBall &b : balls) (*text)[!b.first_of_cell()] += line_of(b);
-      balls.clear();
-    }
+  std::vector<PlacedBall> balls;
+  const SurfaceCounts mine = make_share(balls, [&](bool row_ends) {
+    if (text && !row_ends) return;
+    if (text) Slope::in_order(balls);
+    for (size_t k = 0; text && k < balls.size(); k++)
+      (*text)[!balls[k].first_of_cell()] += line_of(balls[k]);
+    balls.clear();
   });
   bigint numbers[4] = {mine.without_surface, mine.dropped, mine.base, mine.extra};
   bigint totals[4];
@@ -332,21 +303,11 @@ std::vector<PlacedBall> BallPlacement::all()
 {
   if (!sampler) return std::move(from_file);
   check_regions();
-  std::vector<PlacedBall> mine, together;
-  on_all_ranks(lmp, caller, [&]() {
-    const auto share = new_sampler();
-    SurfaceCounts unused;
-    int first, end;
-    my_rows(first, end);
-    const int across = share->tiles().nx;
-    for (int tile = first * across; tile < end * across; tile++) sample(*share, tile, mine, unused);
+  std::vector<PlacedBall> mine;
+  make_share(mine, [](bool) {
   });
-  for (int from = 0; from < comm->nprocs; from++) {
-    std::vector<PlacedBall> theirs;
-    if (from == comm->me) theirs.swap(mine);
-    broadcast(world, theirs, from);
-    together.insert(together.end(), theirs.begin(), theirs.end());
-  }
+  std::vector<PlacedBall> together = gather_records(world, mine);
+  broadcast(world, together);
   Slope::in_order(together);
   return together;
 }
@@ -428,8 +389,7 @@ const std::vector<double> &BallPlacement::fingerprint()
     marks.push_back(value);
   const bool several = ground->spacings().size() > 1;
   for (int k = 0; k < std::min(nodes, MARKS + 0.0); k++) {
-    const bigint node =
-        static_cast<bigint>(nodes <= MARKS ? k : part(0.6180339887498949, k) * nodes);
+    const bigint node = static_cast<bigint>(nodes <= MARKS ? k : part(k) * nodes);
     const int i = static_cast<int>(node % plan.nx), j = static_cast<int>(node / plan.nx);
     marks.push_back(plan.probe(i, j));
     if (several) marks.push_back(spacing_around(plan.x(i), plan.y(j)));
@@ -500,7 +460,7 @@ void BallPlacement::read_file()
               {x[0], x[1], x[2], static_cast<int64_t>(from_file.size()), ground->zone(x[0], x[1])});
         else
           dropped++;
-        if (from_file.size() > MAX_BALLS)
+        if (from_file.size() > Slope::MOST_COUNTED)
           throw Slope::line_error(file, row.line, "must be fewer than 2^31 balls, got more");
       });
 }
@@ -513,7 +473,7 @@ void BallPlacement::find_sums()
   long double sum[3] = {0.0, 0.0, 0.0};
   for (size_t k = 0; k < from_file.size(); k++) {
     const double x[3] = {from_file[k].x, from_file[k].y, from_file[k].z};
-    for (int d = 0; d < 3; d++) sum[d] += (2.0 * part(0.6180339887498949, k) - 1.0) * x[d];
+    for (int d = 0; d < 3; d++) sum[d] += (2.0 * part(k) - 1.0) * x[d];
   }
   for (int d = 0; d < 3; d++) sums[d] = static_cast<double>(sum[d]);
 }

@@ -70,12 +70,10 @@ class BallPlacement : protected Pointers {
 
   void place_file();
   void place_surface();
-  std::unique_ptr<Slope::BallSampler> new_sampler() const;
-  void sample(Slope::BallSampler &, int tile, std::vector<Slope::PlacedBall> &,
-              Slope::SurfaceCounts &) const;
-  void my_rows(int &first, int &end) const;
   void warn_of_spacing() const;
   bool any() const;
+  template <typename Use>
+  Slope::SurfaceCounts make_share(std::vector<Slope::PlacedBall> &, Use after_tile) const;
   Slope::SurfaceCounts
   count_all(std::vector<std::string> *text) const;    // text: lines, of nodes, extra
   void report(const Slope::SurfaceCounts &, bool known) const;

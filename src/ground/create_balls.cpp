@@ -129,12 +129,7 @@ bigint CreateBalls::fill(double diameter, int narg, char **arg, std::vector<doub
     seed = word.whole_number();
     word.must(seed >= 1, "> 0");
   }
-  Region *region = compat::find_region(lmp, arg[0]);
-  if (!region) error->all(FLERR, "Create_balls fill region {} does not exist", arg[0]);
-  region->init();
-  if (region->dynamic_check())
-    error->all(FLERR, "Create_balls fill region {} must not move, got one that moves or varies",
-               arg[0]);
+  Region *region = region_argument(lmp, "Create_balls fill", arg[0]);
 
   const Slope::BallPacking packing(diameter, seed);
   double lo[3], hi[3], share[3];

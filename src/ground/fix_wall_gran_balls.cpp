@@ -11,7 +11,6 @@
 
 #include "atom.h"
 #include "ball_placement.h"
-#include "contact_energy.h"
 #include "contact_guards.h"
 #include "error.h"
 #include "inserted_balls.h"
@@ -129,7 +128,7 @@ size_t FixWallGranBalls::list_of(int which, int moving) const
   return static_cast<size_t>(which) * (atom->ntypes + 1) + moving;
 }
 
-const ContactLaw &FixWallGranBalls::law_of_list(size_t k) const
+ContactLaw FixWallGranBalls::law_of_list(size_t k) const
 {
   return law_of(static_cast<int>(k % (atom->ntypes + 1)), types[k / (atom->ntypes + 1)]);
 }
@@ -138,22 +137,20 @@ const ContactLaw &FixWallGranBalls::law_of_list(size_t k) const
    a contact's key: the number of the fixed ball, which stays the same when its index does not
 ------------------------------------------------------------------------- */
 
-void FixWallGranBalls::take_contacts()
+void FixWallGranBalls::key_of(int ball, double *key) const
 {
-  std::vector<int> left(atom->nlocal, 0);    // of a ball, in all lists; may be in several
-  for (const ContactList &l : lists)
-    for (size_t k = 0; k < l.entries.size(); k++)
-      if (l.entries[k].i < atom->nlocal) left[l.entries[k].i] += l.has_history(k);
-  for (int i = 0; i < atom->nlocal; i++)
-    if (left[i] > 0) records.make(i, left[i]);
-  for (const ContactList &l : lists)
-    for (size_t k = 0; k < l.entries.size(); k++) {
-      const int i = l.entries[k].i;
-      if (i >= atom->nlocal || !l.has_history(k)) continue;
-      const int n = records.contacts(i) - left[i]--;
-      *records.key(i, n) = static_cast<double>(balls->number(l.entries[k].j));
-      std::copy_n(l.histories[k], HISTORY, records.history(i, n));
-    }
+  *key = static_cast<double>(balls->number(ball));
+}
+
+std::string FixWallGranBalls::name_of(int ball) const
+{
+  const Vector &at = balls->places()[ball];
+  return fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", at.x, at.y, at.z);
+}
+
+FixContactWall::Depth FixWallGranBalls::depth_of(const ContactEntry &e, double overlap) const
+{
+  return {overlap, std::min(atom->radius[e.i], radius)};
 }
 
 // a history for each entry of new lists: the stored one for a contact that is known
@@ -228,28 +225,6 @@ void FixWallGranBalls::post_force(int)
 }
 
 /* ----------------------------------------------------------------------
-   called by the pair style before it computes forces
-------------------------------------------------------------------------- */
-
-void FixWallGranBalls::find_contacts(bool repeat)
-{
-  const MovingBalls moving = pair->moving_balls();
-  const FixedPartners fixed = partners();
-  InitialOverlap initial(lmp, pair->guards);
-  for (ContactList &l : lists) {
-    if (repeat)
-      l.adopt_overlaps(moving, fixed, [&](const ContactList::Entry &e, double overlap) {
-        const Vector &ball = balls->places()[e.j];
-        initial.record(
-            overlap, std::min(atom->radius[e.i], radius), atom->tag[e.i], atom->x[e.i],
-            fmt::format("the fixed ball at {:.6g} {:.6g} {:.6g},", ball.x, ball.y, ball.z));
-      });
-    l.find(repeat, moving, fixed);
-  }
-  if (repeat) initial.check(caller);
-}
-
-/* ----------------------------------------------------------------------
    contact forces of the fixed balls on the moving ones
 ------------------------------------------------------------------------- */
 
@@ -266,8 +241,9 @@ void FixWallGranBalls::apply(bool repeat)
   for (size_t k = 0; k < lists.size(); k++) {
     ContactList &l = lists[k];
     if (l.entries.empty()) continue;
-    law = &law_of_list(k);
-    l.apply(*law, update->dt, repeat, moving, fixed, &tally);
+    const ContactLaw its = law_of_list(k);
+    law = &its;
+    l.apply(its, update->dt, repeat, moving, fixed, &tally);
   }
 
   force_mine[0] = -tally.force.x;
@@ -275,23 +251,6 @@ void FixWallGranBalls::apply(bool repeat)
   force_mine[2] = -tally.force.z;
   force_ready = 0;
   contacts_in_lists = true;
-}
-
-/* ---------------------------------------------------------------------- */
-
-double FixWallGranBalls::elastic_energy() const
-{
-  const MovingBalls moving = pair->moving_balls();
-  const FixedPartners fixed = partners();
-  double energy = 0.0;
-  for (size_t k = 0; k < lists.size(); k++)
-    if (!lists[k].entries.empty())
-      energy += Slope::elastic_energy(lists[k], law_of_list(k), update->dt, moving, fixed,
-                                      [this](const ContactList::Entry &e, double overlap) {
-                                        pair->guards.record_overlap(
-                                            e.i, overlap, std::min(atom->radius[e.i], radius));
-                                      });
-  return energy;
 }
 
 /* ----------------------------------------------------------------------
@@ -316,10 +275,8 @@ double FixWallGranBalls::compute_vector(int n)
 
 double FixWallGranBalls::memory_usage()
 {
-  double bytes =
-      balls->memory_usage() + records.memory_usage() + histories.capacity() * sizeof(double);
-  for (const ContactList &l : lists) bytes += l.memory_usage();
-  return bytes;
+  return FixContactWall::memory_usage() + balls->memory_usage() +
+      histories.capacity() * sizeof(double);
 }
 
 /* ----------------------------------------------------------------------

@@ -16,7 +16,6 @@ FixStyle(wall/gran/balls,FixWallGranBalls);
 
 #include "ball_ground.h"
 #include "ball_tiles.h"
-#include "contact_list.h"
 
 #include <memory>
 #include <string>
@@ -37,8 +36,7 @@ class FixWallGranBalls : public FixContactWall, public OnBallGround {
 
   double memory_usage() override;
 
-  void find_contacts(bool repeat) override;
-  double elastic_energy() const override;
+  void find_contacts(bool repeat) override { find_touching(repeat, "see delete_balls"); }
   void check_sizes() override;
 
   // largest overlap (m) of a ball at x with any fixed ball, <= 0 if it touches none
@@ -57,21 +55,22 @@ class FixWallGranBalls : public FixContactWall, public OnBallGround {
 
   std::vector<int> types, type_of_zone;
 
-  // what may touch until the next neighbor list: for each of these, by type of the moving ball
+  // a list for each of these, by type of the moving ball
 
-  std::vector<Slope::ContactList> lists;
   size_t list_of(int which, int moving) const;
-  const Slope::ContactLaw &law_of_list(size_t) const;
-  std::vector<double> histories;    // of their entries
+  std::vector<double> histories;    // of the lists' entries
 
   double force_mine[3], force_all[3];    // on the fixed balls
   int force_ready;
 
-  Slope::FixedPartners partners() const
+  Slope::ContactLaw law_of_list(size_t) const override;
+  Slope::FixedPartners partners() const override
   {
     return {balls->places(), &radius, Slope::FixedPartners::ONE};
   }
-  void take_contacts() override;
+  void key_of(int ball, double *key) const override;
+  std::string name_of(int ball) const override;
+  Depth depth_of(const Slope::ContactEntry &, double overlap) const override;
   void give_histories();
   void archive_wall(Slope::Archive &) override;
   void apply(bool);

@@ -14,6 +14,7 @@
 #include <cmath>
 
 using namespace LAMMPS_NS;
+using Slope::FARTHEST;
 
 static constexpr double LEAST_SINK = 0.05;    // in diameters: the closer, the more columns it takes
 

@@ -6,6 +6,8 @@
 
 #include "plan_nodes.h"
 
+#include "constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,7 +15,6 @@
 
 using namespace Slope;
 
-static constexpr double MAX_COUNT = 2147483647.0;
 static constexpr double ASIDE = 1.0e-6;    // of the spacing: farther than rounding
 static const double NaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -55,7 +56,7 @@ PlanNodes::PlanNodes(const NodeGrid &g, const GroundHeights &s, int tile_in) :
   double ifirst, jfirst, ni, nj;
   node_range(g.xlo, g.xhi, g.xorigin, g.spacing, ifirst, ni);
   node_range(g.ylo, g.yhi, g.yorigin, g.spacing, jfirst, nj);
-  if ((ni + 2.0) * (nj + 2.0) > MAX_COUNT) throw std::length_error("plan grid of 2^31 nodes");
+  if ((ni + 2.0) * (nj + 2.0) > MOST_COUNTED) throw std::length_error("plan grid of 2^31 nodes");
   xfirst = g.xorigin + ifirst * g.spacing;
   yfirst = g.yorigin + jfirst * g.spacing;
   nx = static_cast<int>(ni);

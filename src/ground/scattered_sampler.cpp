@@ -6,6 +6,8 @@
 
 #include "scattered_sampler.h"
 
+#include "constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -51,7 +53,7 @@ ScatteredLattice::ScatteredLattice(const NodeGrid &g, const GroundHeights &s, ui
     n[d] = whole(hi[d] / g.spacing) + 2 - from;
     first[d] = from * FINER;
   }
-  if (before + static_cast<double>(n[0]) * n[1] > 2147483647.0)
+  if (before + static_cast<double>(n[0]) * n[1] > MOST_COUNTED)
     throw std::length_error("plan grid of 2^31 nodes");
 }
 
@@ -69,13 +71,13 @@ bool ScatteredLattice::on_surface(double x, double y, double &z) const
 
 ScatteredLattice::Place ScatteredLattice::place(int64_t i, int64_t j) const
 {
-  // where zones divide the ground, whether it is kept is found out faster than its height
   static constexpr double OF_BITS = 1.0 / 4294967296.0;
   Place p;
   p.hash = mix(mix(seed ^ static_cast<uint64_t>(i)) ^ static_cast<uint64_t>(j));
   p.x = grid.xorigin + (i + OF_BITS * static_cast<uint32_t>(p.hash)) * cell;
   p.y = grid.yorigin + (j + OF_BITS * (p.hash >> 32)) * cell;
   p.z = 0.0;
+  // where zones divide the ground, whether it is kept is found out faster than its height
   p.on = (!of_zones() || kept(p.x, p.y)) && on_surface(p.x, p.y, p.z);
   return p;
 }

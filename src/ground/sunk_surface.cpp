@@ -6,6 +6,8 @@
 
 #include "sunk_surface.h"
 
+#include "constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,7 +28,6 @@ static constexpr int AROUND = 4;       // columns around a rim that tell the slo
 static constexpr int RIM_STEPS = 8;    // halvings between two columns
 static constexpr int CHAIN_STEPS = 8;
 static constexpr int CONTACT_STEPS = 4;
-static constexpr double MAX_COLUMNS = 2147483647.0;
 static constexpr double MAX_OF_GROUND = 1.0e14;    // few of which are looked at
 
 /* ---------------------------------------------------------------------- */
@@ -42,8 +43,8 @@ SunkSurface::SunkSurface(const Bed &bed_in, double sink_in, double pitch) :
   const double margin = bed.body ? (bed.ground ? REACH + 1.0 : 1.0) * sink + 2.0 * pitch : 0.0;
   const double wide = std::ceil((bed.xhi - bed.xlo + 2.0 * margin) / pitch + 4.0);
   const double high = std::ceil((bed.yhi - bed.ylo + 2.0 * margin) / pitch + 4.0);
-  if (!(std::max(wide, high) < MAX_COLUMNS &&
-        wide * high < (bed.body ? MAX_COLUMNS : MAX_OF_GROUND)))
+  if (!(std::max(wide, high) < MOST_COUNTED &&
+        wide * high < (bed.body ? MOST_COUNTED : MAX_OF_GROUND)))
     throw std::length_error(bed.body ? "2^31 columns" : "2^31 columns along a side, 1e14 in all");
 
   // columns on all edges of the rectangle

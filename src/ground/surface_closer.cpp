@@ -39,6 +39,11 @@ double Slope::sampling_slack(double radius)
   return PITCH * radius / std::sqrt(2.0);    // half the diagonal between samples
 }
 
+double Slope::widest_spacing(double radius)
+{
+  return (2.0 * radius - sampling_slack(radius)) * std::sqrt(2.0) / LEVEL_SPARE;
+}
+
 typedef SurfaceCloser::Point Point;
 
 static double distance2(const Point &a, const Point &b)

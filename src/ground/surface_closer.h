@@ -25,6 +25,9 @@ namespace Slope {
 double cover_radius(double spacing, double radius);
 double sampling_slack(double radius);
 
+// from which on that is two radii or more, so that a ball may pass where the ground is steep
+double widest_spacing(double radius);
+
 class SurfaceCloser {
  public:
   struct Point {

@@ -8,6 +8,9 @@
 #ifndef SLOPE_INSERTED_BALLS_H
 #define SLOPE_INSERTED_BALLS_H
 
+#include "lmptype.h"
+
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -20,6 +23,10 @@ struct InsertedBalls {
 };
 
 std::vector<InsertedBalls> inserted_balls(LAMMPS *);
+
+// A group has the balls that were there when it was defined. If it has none, and no fix pour or fix deposit will give it one:
+// the number of balls that it seems to be meant for, of those that move; else 0. Collective.
+bigint balls_beside_empty(LAMMPS *, int groupbit, const std::function<bool(int)> &meant);
 
 }    // namespace LAMMPS_NS
 

@@ -58,7 +58,7 @@ std::string LAMMPS_NS::archive_bytes(LAMMPS *lmp, FILE *fp, const std::string &c
 
 /* ---------------------------------------------------------------------- */
 
-const double *RestartExtra::find(int i, int nth, int fixed, int each)
+const double *RestartExtra::record_of_ball(int i, int nth, int fixed, int each)
 {
   const double *at = atom->extra[i], *const end = at + atom->nextra_store;
   auto whole = [end](const double *number, double least) {

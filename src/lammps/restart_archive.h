@@ -48,10 +48,10 @@ class RestartExtra : protected Pointers {
   {
   }
 
-  // for ball i, the nth fix: how many numbers there are, the number of contacts, and so on; all fit in what
-  // has been read, and are fixed numbers and those of each contact, 0: without their number; nullptr: the file
-  // is damaged
-  const double *find(int i, int nth, int fixed, int each);
+  // What the file has for ball i and the nth fix, as LAMMPS' unpack_restart() counts them: how many numbers
+  // there are, this one included, then, where each > 0, the number of contacts, and so on: fixed numbers in all,
+  // these included, and each more for every contact. nullptr: the file is damaged
+  const double *record_of_ball(int i, int nth, int fixed, int each);
 
   void check(const std::string &caller) const;    // collective
 

@@ -5,6 +5,8 @@
 
 #include "style_argument.h"
 
+#include "lammps_compat.h"
+
 #include "atom.h"
 #include "error.h"
 
@@ -52,6 +54,16 @@ int LAMMPS_NS::atom_type_argument(LAMMPS *lmp, const std::string &what, const ch
     lmp->error->all(FLERR, "{} must be 1 to {} (the atom types of the box), got {}", what, most,
                     text);
   return type;
+}
+
+Region *LAMMPS_NS::region_argument(LAMMPS *lmp, const std::string &what, const std::string &id)
+{
+  Region *region = compat::find_region(lmp, id);
+  if (!region) lmp->error->all(FLERR, "{} region {} does not exist", what, id);
+  region->init();
+  if (region->dynamic_check())
+    lmp->error->all(FLERR, "{} region {} must not move, got one that moves or varies", what, id);
+  return region;
 }
 
 std::string LAMMPS_NS::listed(const std::vector<std::string> &words)

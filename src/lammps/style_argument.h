@@ -14,6 +14,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class Region;
 
 // Numbers among the arguments of a style. LAMMPS' own errors do not say which argument it was; here
 // what names style and argument: "Fix deposit/grid cell".
@@ -21,6 +22,9 @@ double number_argument(LAMMPS *, const std::string &what, const char *text);
 double positive_argument(LAMMPS *, const std::string &what, const char *text);
 int whole_number_argument(LAMMPS *, const std::string &what, const char *text);
 int atom_type_argument(LAMMPS *, const std::string &what, const char *text);
+
+// a region that exists and stands still, as a run begins with it
+Region *region_argument(LAMMPS *, const std::string &what, const std::string &id);
 
 // "a, b or c"
 std::string listed(const std::vector<std::string> &);
@@ -66,9 +70,6 @@ class KeywordReader {
   std::string choices(int k) const;
   std::string item(int k) const;
 };
-
-// Coordinates beyond it are mistakes: places closer to each other than 1e-4 would be one there.
-static constexpr double FARTHEST = 1.0e12;
 
 }    // namespace LAMMPS_NS
 

@@ -11,7 +11,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "contact_energy.h"
 #include "contact_guards.h"
 #include "error.h"
 #include "lammps_compat.h"
@@ -25,7 +24,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
@@ -86,38 +84,26 @@ void FixWallGranMesh::init()
    law for balls of a type on the surface, where the rolling radius is the ball's
 ------------------------------------------------------------------------- */
 
-ContactLaw FixWallGranMesh::smooth_law(int type) const
+ContactLaw FixWallGranMesh::law_of_list(size_t type) const
 {
-  ContactLaw smooth = law_of(type);
+  ContactLaw smooth = law_of(static_cast<int>(type));
   smooth.rolling_factor = 2.0;    // of the two radii's r r/(r + r)
   return smooth;
 }
 
-/* ---------------------------------------------------------------------- */
-
-void FixWallGranMesh::take_contacts()
+void FixWallGranMesh::key_of(int slot, double *key) const
 {
-  // per ball: how many, then each
+  memcpy(key, &watch.slots[slot].contact.at.normal, sizeof(Vector));
+}
 
-  std::vector<int> count(watch.balls(), 0);
-  auto visit = [this](std::function<void(const ContactList &, size_t)> what) {
-    for (const ContactList &l : lists)
-      for (size_t k = 0; k < l.entries.size(); k++)    // balls may have been deleted
-        if (l.has_history(k) && l.entries[k].i < atom->nlocal) what(l, k);
-  };
-  visit([&](const ContactList &l, size_t k) {
-    count[watch.slots[l.entries[k].j].ball]++;
-  });
-  for (int b = 0; b < watch.balls(); b++) {
-    if (count[b]) records.make(watch.number_of(b), count[b]);
-    count[b] = 0;
-  }
-  visit([&](const ContactList &l, size_t k) {
-    const SurfaceWatch::Slot &slot = watch.slots[l.entries[k].j];
-    const int ball = l.entries[k].i, n = count[slot.ball]++;
-    memcpy(records.key(ball, n), &slot.contact.at.normal, sizeof(Vector));
-    std::copy_n(l.histories[k], HISTORY, records.history(ball, n));
-  });
+std::string FixWallGranMesh::name_of(int slot) const
+{
+  return fmt::format("triangle {}", watch.slots[slot].contact.at.triangle + 1);
+}
+
+FixContactWall::Depth FixWallGranMesh::depth_of(const ContactEntry &e, double) const
+{
+  return {watch.slots[e.j].depth(), atom->radius[e.i]};
 }
 
 /* ----------------------------------------------------------------------
@@ -313,20 +299,7 @@ void FixWallGranMesh::end_of_step()
 void FixWallGranMesh::find_contacts(bool repeat)
 {
   find_features();
-  const MovingBalls moving = pair->moving_balls();
-  const FixedPartners fixed = phantoms(centres);
-  InitialOverlap initial(lmp, pair->guards);
-  for (ContactList &l : lists) {
-    if (repeat)
-      l.adopt_overlaps(moving, fixed, [&](const ContactList::Entry &e, double) {
-        const SurfaceWatch::Slot &slot = watch.slots[e.j];
-        initial.record(slot.depth(), atom->radius[e.i], atom->tag[e.i], atom->x[e.i],
-                       fmt::format("triangle {}", slot.contact.at.triangle + 1));
-      });
-    l.find(repeat, moving, fixed);
-  }
-  if (repeat)
-    initial.check(caller, "move the surface, or remove the balls there with delete_atoms region");
+  find_touching(repeat, "move the surface, or remove the balls there with delete_atoms region");
 }
 
 /* ----------------------------------------------------------------------
@@ -350,7 +323,7 @@ void FixWallGranMesh::apply(bool repeat)
 
   for (size_t type = 1; type < lists.size(); type++) {
     if (lists[type].entries.empty()) continue;
-    const ContactLaw law = smooth_law(type);
+    const ContactLaw law = law_of_list(type);
     auto add = [&](int i, int j, const Vector &f, const Vector &d) {
       const SurfaceWatch::Slot &slot = watch.slots[j];
       if (pair->works.wanted) {
@@ -378,7 +351,7 @@ void FixWallGranMesh::apply(bool repeat)
                       dot(f, touched.normal) * update->dt);
     };
     ContactTally tally = tally_of(add);
-    lists[type].apply(law, update->dt, repeat, moving, phantoms(centres), &tally);
+    lists[type].apply(law, update->dt, repeat, moving, partners(), &tally);
   }
   torque_of_balls(-1.0);
 
@@ -402,16 +375,7 @@ double FixWallGranMesh::elastic_energy() const
     const SurfaceContact &c = watch.slots[k].contact;
     places.push_back(moved(centres[k], c.spring - c.overlap, c.at.normal));
   }
-  const MovingBalls moving = pair->moving_balls();
-  double energy = 0.0;
-  for (size_t type = 1; type < lists.size(); type++)
-    if (!lists[type].entries.empty())
-      energy += Slope::elastic_energy(
-          lists[type], smooth_law(type), update->dt, moving, phantoms(places),
-          [this](const ContactList::Entry &e, double) {
-            pair->guards.record_overlap(e.i, watch.slots[e.j].depth(), atom->radius[e.i]);
-          });
-  return energy;
+  return energy_beside(phantoms(places));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -453,11 +417,9 @@ double FixWallGranMesh::compute_vector(int n)
 
 double FixWallGranMesh::memory_usage()
 {
-  double bytes = surface->memory_usage() + watch.memory_usage() + records.memory_usage();
-  for (const ContactList &l : lists) bytes += l.memory_usage();
-  bytes += history.size() * sizeof(history[0]) + centres.capacity() * sizeof(Vector) +
+  return FixContactWall::memory_usage() + surface->memory_usage() + watch.memory_usage() +
+      history.size() * sizeof(history[0]) + centres.capacity() * sizeof(Vector) +
       radii.capacity() * sizeof(double);
-  return bytes;
 }
 
 /* ----------------------------------------------------------------------
@@ -505,7 +467,7 @@ void SpeedGuard::start()
 
 void SpeedGuard::record(int i, double speed, const Slope::ContactLaw &law)
 {
-  const double radius = atom->radius[i], deep = law.depth(atom->rmass[i], radius, speed);
+  const double radius = atom->radius[i], deep = law.depth(atom->rmass[i], speed);
   const double share = deep / (DEEPEST * radius);
   if (!(share > 1.0)) return;
   if (count++ == 0)

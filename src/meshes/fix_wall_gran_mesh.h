@@ -14,7 +14,6 @@ FixStyle(wall/gran/mesh,FixWallGranMesh);
 
 #include "fix_contact_wall.h"
 
-#include "contact_list.h"
 #include "run_clock.h"
 #include "surface_options.h"
 #include "surface_recorder.h"
@@ -68,7 +67,7 @@ class FixWallGranMesh : public FixContactWall {
   double memory_usage() override;
 
   void find_contacts(bool repeat) override;
-  double elastic_energy() const override;
+  double elastic_energy() const override;    // of phantoms where the springs are
 
  private:
   SurfaceOptions options;
@@ -79,7 +78,6 @@ class FixWallGranMesh : public FixContactWall {
   // ball where the surface does, and as deep.
 
   Slope::SurfaceWatch watch;
-  std::vector<Slope::ContactList> lists;
   std::vector<double> radii;    // of each slot's phantom
   std::deque<std::array<double, Slope::HISTORY>> history;
   std::vector<Slope::Vector> centres;    // of the phantoms
@@ -97,17 +95,20 @@ class FixWallGranMesh : public FixContactWall {
 
   SpeedGuard fast;
 
-  Slope::ContactLaw smooth_law(int type) const;
+  Slope::ContactLaw law_of_list(size_t type) const override;
   Slope::FixedPartners phantoms(const std::vector<Slope::Vector> &places) const
   {
     return {places.data(), radii.data(), Slope::FixedPartners::EACH};
   }
+  Slope::FixedPartners partners() const override { return phantoms(centres); }
+  void key_of(int slot, double *key) const override;
+  std::string name_of(int slot) const override;
+  Depth depth_of(const Slope::ContactEntry &, double overlap) const override;
   void add_contact(int slot, const double *from);
   void find_features();
   void warn_of_enclosed();
   void warn_of_rounding();
   void check_speed(int i, const Slope::Vector &normal);
-  void take_contacts() override;
   void archive_wall(Slope::Archive &) override;
   void apply(bool);
   void reduce();

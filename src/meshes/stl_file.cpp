@@ -211,23 +211,23 @@ StlFile StlFile::read(const std::string &path, double scale, const Vector &move)
   const bool fits = bytes.size() >= HEADER && bytes.size() == HEADER + RECORD * n;
   StlFile file;
   const bool text = begins_with_solid(bytes) && bytes.find('\0') == std::string::npos;
-  file.binary = fits || !text;
+  const bool binary = fits || !text;
   if (!fits && is_elevation_grid(bytes))
     throw std::runtime_error(path + ": must be an STL file, got an elevation grid: terrain " +
                              path + " takes one");
-  if (file.binary && bytes.size() < HEADER)
+  if (binary && bytes.size() < HEADER)
     throw std::runtime_error(path +
                              ": an STL file begins with solid, or has at least 84 bytes, got " +
                              std::to_string(bytes.size()));
-  if (file.binary && bytes.size() < HEADER + RECORD * n)
+  if (binary && bytes.size() < HEADER + RECORD * n)
     throw std::runtime_error(path +
                              ": the file is cut short, or no STL: " + counted(n, "triangle") +
                              (n == 1 ? " needs " : " need ") + std::to_string(HEADER + RECORD * n) +
                              " bytes, got " + std::to_string(bytes.size()));
-  const std::vector<Triangle> all = file.binary ? read_binary(path, bytes) : read_text(path, bytes);
+  const std::vector<Triangle> all = binary ? read_binary(path, bytes) : read_text(path, bytes);
 
-  file.surplus = file.binary ? static_cast<double>(bytes.size() - HEADER - RECORD * n) : 0.0;
-  file.rounding = file.binary ? scale * rounding_of(all) : 0.0;
+  file.surplus = binary ? static_cast<double>(bytes.size() - HEADER - RECORD * n) : 0.0;
+  file.rounding = binary ? scale * rounding_of(all) : 0.0;
   file.skipped = 0;
   for (const Triangle &t : all) {
     const double side = t.longest_side();

@@ -26,7 +26,6 @@ namespace Slope {
 struct StlFile {
   std::vector<Triangle> triangles;    // those that have an area
   int skipped;                        // those without: two corners, or all three on a line
-  bool binary;
   double surplus;    // bytes after the last triangle of a binary file, which are not read
   double
       rounding;    // half a last digit of a binary file's largest coordinate, times scale; text: 0

@@ -219,8 +219,6 @@ void SurfaceWatch::find_features(int number, const Vector &x, double radius, dou
   hand_out(number, x, radius);
 }
 
-/* ---------------------------------------------------------------------- */
-
 /* ----------------------------------------------------------------------
    Of a contact and a nearer one, by its tangent plane: height h of the contact above that plane, and
    its gradient as the ball moves, along (normal of the plane, own normal)

@@ -6,6 +6,8 @@
 
 #include "terrain_surface.h"
 
+#include "constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -76,7 +78,7 @@ void TerrainSurface::measure()
       }
       about_.lowest.z = std::min(about_.lowest.z, zmin);
       about_.highest.z = std::max(about_.highest.z, zmax);
-      const double turns = 0.6180339887498949 * (1.0 + i + 3.0 * j);
+      const double turns = GOLDEN * (1.0 + i + 3.0 * j);
       about_.sum += (1.0 + turns - std::floor(turns)) * (zmin + 2.0 * zmax + 1.0);
     }
 }

@@ -20,14 +20,6 @@ inline Vector minus(const Vector &a, const Vector &b)
 {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-inline double dot(const Vector &a, const Vector &b)
-{
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-inline Vector cross(const Vector &a, const Vector &b)
-{
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 inline double size_of(const Vector &a)
 {
   return std::sqrt(dot(a, a));

@@ -6,6 +6,8 @@
 
 #include "triangle_mesh.h"
 
+#include "constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -28,7 +30,7 @@ TriangleMesh::TriangleMesh(const std::vector<Triangle> &list) : triangles(list),
     const Triangle &t = triangles[k];
     middles[k] = t.middle();
     order[k] = k;
-    const double turns = 0.6180339887498949 * (k + 1);    // another order is another mesh
+    const double turns = GOLDEN * (k + 1);    // another order is another mesh
     const double weight = 1.0 + turns - std::floor(turns);
     sum += weight *
         (t.a.x + 2.0 * t.a.y + 3.0 * t.a.z + 5.0 * t.b.x + 7.0 * t.b.y + 11.0 * t.b.z +

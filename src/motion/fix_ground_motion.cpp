@@ -9,7 +9,7 @@
 
 #include "fix_ground_motion.h"
 
-#include "empty_group.h"
+#include "inserted_balls.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
 #include "rank_zero.h"

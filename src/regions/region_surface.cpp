@@ -14,14 +14,13 @@
 #include "region_marks.h"
 #include "region_terrain.h"
 #include "region_union.h"
+#include "style_argument.h"
 
 #include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
 
-static constexpr double UNBOUNDED = 1.0e19;    // LAMMPS writes INF as 1e20
-static constexpr double DEFAULT_STEPS = 1000.0;
 static constexpr int NEAR_STEPS = 16;
 static constexpr double THIN =
     0.008;    // of a step: no part of a region, but two surfaces in one place
@@ -33,13 +32,7 @@ RegionSurface::RegionSurface(LAMMPS *lmp, const std::string &caller, const char 
     Pointers(lmp),
     terrain(nullptr)
 {
-  region = compat::find_region(lmp, region_id);
-  if (!region) error->all(FLERR, "{} region {} does not exist", caller, region_id);
-  region->init();
-
-  if (region->dynamic_check())
-    error->all(FLERR, "{} region {} must not move, got one that moves or varies", caller,
-               region_id);
+  Region *const region = region_argument(lmp, caller, region_id);
   if (region->openflag)
     error->all(FLERR, "{} region {} must have no open faces, got some", caller, region_id);
   if (!region->bboxflag)
@@ -68,7 +61,7 @@ RegionSurface::RegionSurface(LAMMPS *lmp, const std::string &caller, const char 
   }
 
   lower = side == LOWER;
-  step = step_in > 0.0 ? step_in : (zhi - zlo) / DEFAULT_STEPS;
+  step = step_in > 0.0 ? step_in : (zhi - zlo) / STEPS;
 
   // the upper boundary of a terrain is its elevation grid: no search
 

@@ -20,9 +20,11 @@ namespace LAMMPS_NS {
 class RegionSurface : protected Pointers {
  public:
   enum { LOWER, UPPER };
+  static constexpr double UNBOUNDED = 1.0e19;    // LAMMPS writes INF as 1e20
+  static constexpr double STEPS = 1000.0;        // of a region's height, where no step is asked for
 
   // What is far thinner than a step counts as rounding, and the columns of some styles are searched in
-  // steps (region_columns.h). step 0: a thousandth of the region's height. Errors start with caller.
+  // steps (region_columns.h); 0: STEPS of them. Errors start with caller.
   RegionSurface(class LAMMPS *, const std::string &caller, const char *region_id, int side,
                 double step = 0.0);
   ~RegionSurface() override;
@@ -57,7 +59,6 @@ class RegionSurface : protected Pointers {
   double xlo, xhi, ylo, yhi, zlo, zhi;
 
  private:
-  class Region *region;
   const class RegTerrain *terrain;    // set if its grid is the boundary
   bool lower;
   double step;

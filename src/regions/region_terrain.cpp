@@ -6,12 +6,14 @@
 #include "region_terrain.h"
 
 #include "comm.h"
+#include "constants.h"
 #include "error.h"
 #include "node_memory.h"
 #include "rank_zero.h"
 #include "style_argument.h"
 
 using namespace LAMMPS_NS;
+using Slope::FARTHEST;
 
 static constexpr double DEFAULT_CELLS = 5.0;    // depth and headroom, in cells of the raster
 

@@ -172,12 +172,10 @@ void SlipOptions::check()
 template <class Kind>
 void SlipOptions::check_region(const char *what, const std::string &named, const char *style) const
 {
-  Region *found = compat::find_region(lmp, named);
-  if (!found) error->all(FLERR, "{} region {} does not exist", what, named);
+  Region *found = region_argument(lmp, what, named);
   if (!dynamic_cast<Kind *>(found))
     error->all(FLERR, "{} region {} must be of style {}, got {}", what, named, style, found->style);
-  if (found->dynamic_check() || !found->interior)
-    error->all(FLERR, "{} region {} must stand still and have side in", what, named);
+  if (!found->interior) error->all(FLERR, "{} region {} must have side in, got out", what, named);
 }
 
 /* ---------------------------------------------------------------------- */

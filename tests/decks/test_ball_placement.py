@@ -150,7 +150,7 @@ def test_same_balls_on_any_number_of_ranks(tmp_path):
 
 @pytest.mark.parametrize("spacing, warning", [
     (0.60, None),
-    (0.67, "spacing 0.67 lets a ball of diameter 0.5 through on steep ground: spacing must be < 0.6495"),
+    (0.67, "spacing 0.67 lets a ball of diameter 0.5 through on steep ground: spacing must be < 0.6496"),
     (0.71, "spacing 0.71 lets a ball of diameter 0.5 through even on level ground: spacing must be < 0.7071"),
 ])
 def test_wide_spacing_is_warned_of(tmp_path, spacing, warning):

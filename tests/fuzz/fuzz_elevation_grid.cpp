@@ -6,11 +6,13 @@
 // Any file is an ESRI ASCII grid, which then comes back from its own file bit by bit, or an error
 // of one line
 
+#include "atomic_file.h"
 #include "elevation_grid.h"
 #include "fuzz_file.h"
 
 #include <cmath>
 
+using Slope::AtomicFile;
 using Slope::ElevationGrid;
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -33,7 +35,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     // a height of -9999 in a file with another NODATA value has no way back
     for (const double height : grid.z)
       if (height == -9999.0) return 0;
-    grid.write(copy, 17);
+    AtomicFile written(copy);
+    grid.write(written, 17);
+    written.commit();
     const ElevationGrid again = ElevationGrid::read(copy);
     unlink(copy.c_str());
     must(again.nx == grid.nx && again.ny == grid.ny && again.xlo == grid.xlo &&

@@ -45,7 +45,7 @@ inline Contact still_contact(double overlap)
 // the law of a solid ball of MASS on a fixed one of the same radius
 inline ContactStep on_fixed(const ContactLaw &law, double dt, bool again = false)
 {
-  return contact_step(law, 1.0 / MASS, 0.0, MASS, 2.5 / MASS, RADIUS / 2.0, dt, again);
+  return contact_step(law, 1.0 / MASS, 0.0, MASS, 2.5 / MASS, dt, again);
 }
 
 }    // namespace OneContact

@@ -171,7 +171,7 @@ struct Reference {
     const double ri = cloud.radius[i], rj = cloud.radius[j], mi = cloud.mass[i], mj = cloud.mass[j];
     const double inverse = 1.0 / mi + 1.0 / mj, rr = 2.0 * ri * rj / (ri + rj);
     const double turning = 2.5 * rr * rr * (1.0 / (mi * ri * ri) + 1.0 / (mj * rj * rj));
-    const ContactStep step = contact_step(law, 1.0 / mi, 1.0 / mj, 1.0 / inverse, turning, rr / 2.0, dt, false);
+    const ContactStep step = contact_step(law, 1.0 / mi, 1.0 / mj, 1.0 / inverse, turning, dt, false);
     double before;
     Contact c = contact_of(cloud, i, j, before, dt);
     const double age = h[AGE];

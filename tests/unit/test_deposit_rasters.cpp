@@ -31,6 +31,14 @@ static const Rasters::Name NAMES[] = {
     Rasters::THICKNESS, Rasters::MAX_THICKNESS, Rasters::MAX_SPEED, Rasters::MAX_ENERGY,
     Rasters::ARRIVAL,   Rasters::LAST_MOTION,   Rasters::SNAPSHOT};
 
+// what a cell holds
+static double at(const Rasters &rasters, Rasters::Name name, int i, int j)
+{
+  double row[256];    // more than the columns of any grid here
+  rasters.row(name, j, row);
+  return row[i];
+}
+
 struct Ball {
   double x[2], side, speed;
 };
@@ -107,7 +115,7 @@ TEST(DepositRasters, OfRanksThoseOfOne)
     for (const Rasters::Name name : NAMES)
       for (int j = 0; j < grid.n[1]; j++)
         for (int i = 0; i < grid.n[0]; i++) {
-          const double a = one.rasters.at(name, i, j), b = ranks.rasters.at(name, i, j);
+          const double a = at(one.rasters, name, i, j), b = at(ranks.rasters, name, i, j);
           ASSERT_EQ(std::isnan(a), std::isnan(b)) << name << " " << i << " " << j;
           if (!std::isnan(a)) ASSERT_NEAR(a, b, 1e-12) << name << " " << i << " " << j;
         }
@@ -129,18 +137,18 @@ TEST(DepositRasters, WhatCellsSaw)
   sample(ranks, -2.5, 0.05, 1.0);
   sample(ranks, 1.5, 2.0, 2.0);
   sample(ranks, 5.5, 9.0, 3.0, false);    // not to be recorded
-  EXPECT_EQ(rasters.at(Rasters::MAX_SPEED, 0, 2), 3.0);
-  EXPECT_EQ(rasters.at(Rasters::MAX_ENERGY, 0, 2), 30.0);
-  EXPECT_EQ(rasters.at(Rasters::ARRIVAL, 0, 2), 0.0);
-  EXPECT_EQ(rasters.at(Rasters::LAST_MOTION, 0, 2), 0.0);    // 0.05 m/s is none
-  EXPECT_EQ(rasters.at(Rasters::ARRIVAL, 4, 2), 2.0);
-  EXPECT_EQ(rasters.at(Rasters::MAX_THICKNESS, 4, 2), 1.0);
-  EXPECT_EQ(rasters.at(Rasters::THICKNESS, 4, 2), 0.0);
-  EXPECT_EQ(rasters.at(Rasters::THICKNESS, 8, 2), 1.0);
-  EXPECT_EQ(rasters.at(Rasters::MAX_THICKNESS, 8, 2), 0.0);
-  EXPECT_TRUE(std::isnan(rasters.at(Rasters::ARRIVAL, 8, 2)));
-  EXPECT_EQ(rasters.at(Rasters::MAX_SPEED, 12, 5), 0.0);    // no block there
-  EXPECT_TRUE(std::isnan(rasters.at(Rasters::LAST_MOTION, 12, 5)));
+  EXPECT_EQ(at(rasters, Rasters::MAX_SPEED, 0, 2), 3.0);
+  EXPECT_EQ(at(rasters, Rasters::MAX_ENERGY, 0, 2), 30.0);
+  EXPECT_EQ(at(rasters, Rasters::ARRIVAL, 0, 2), 0.0);
+  EXPECT_EQ(at(rasters, Rasters::LAST_MOTION, 0, 2), 0.0);    // 0.05 m/s is none
+  EXPECT_EQ(at(rasters, Rasters::ARRIVAL, 4, 2), 2.0);
+  EXPECT_EQ(at(rasters, Rasters::MAX_THICKNESS, 4, 2), 1.0);
+  EXPECT_EQ(at(rasters, Rasters::THICKNESS, 4, 2), 0.0);
+  EXPECT_EQ(at(rasters, Rasters::THICKNESS, 8, 2), 1.0);
+  EXPECT_EQ(at(rasters, Rasters::MAX_THICKNESS, 8, 2), 0.0);
+  EXPECT_TRUE(std::isnan(at(rasters, Rasters::ARRIVAL, 8, 2)));
+  EXPECT_EQ(at(rasters, Rasters::MAX_SPEED, 12, 5), 0.0);    // no block there
+  EXPECT_TRUE(std::isnan(at(rasters, Rasters::LAST_MOTION, 12, 5)));
 }
 
 TEST(DepositRasters, ChangePerTime)
@@ -161,10 +169,10 @@ TEST(DepositRasters, ChangePerTime)
   EXPECT_EQ(rasters.change, 0.0);
 }
 
-static std::vector<double> all_touched(const Rasters &rasters)
+static std::vector<double> all_touched(const Rasters &rasters, const PlanGrid &grid)
 {
   std::vector<double> found;
-  for (int j = 0; j < rasters.grid().n[1]; j++) {
+  for (int j = 0; j < grid.n[1]; j++) {
     const auto cells = rasters.touched(j);
     found.insert(found.end(), cells.begin(), cells.end());
   }
@@ -181,7 +189,7 @@ TEST(DepositRasters, TouchedCells)
     ranks.sample(draw(20), 0.5);
     ranks.rasters.take_snapshot(0.5, 0.0);
     ranks.sample(draw(1), 1.0, false);
-    saved.push_back(all_touched(ranks.rasters));
+    saved.push_back(all_touched(ranks.rasters, grid));
   }
   const std::vector<double> &cells = saved[0];
   const size_t count = cells.size() / Rasters::PER_CELL;
@@ -199,7 +207,7 @@ TEST(DepositRasters, TouchedCells)
   Rasters again;
   again.create(grid);
   for (size_t k = 0; k < cells.size(); k += Rasters::PER_CELL) again.restore(&cells[k]);
-  const auto found = all_touched(again);
+  const auto found = all_touched(again, grid);
   ASSERT_EQ(found.size(), cells.size());
   for (size_t k = 0; k < cells.size(); k++)
     ASSERT_TRUE(found[k] == cells[k] || (std::isnan(found[k]) && std::isnan(cells[k])));
@@ -245,12 +253,14 @@ TEST(DepositRasters, Files)
     ElevationGrid raster(grid.n[0], grid.n[1], grid.lo[0], grid.lo[1], grid.cell, 0.0);
     for (int j = 0; j < grid.n[1]; j++)
       for (int i = 0; i < grid.n[0]; i++) {
-        const double z = base[j * grid.n[0] + i], h = rasters.at(Rasters::THICKNESS, i, j);
+        const double z = base[j * grid.n[0] + i], h = at(rasters, Rasters::THICKNESS, i, j);
         raster.at(i, j) = file.content == DepositRasters::BASE ? z
             : file.content == DepositRasters::SURFACE          ? z + h
-                                                     : rasters.at((Rasters::Name) file.content, i, j);
+                                                     : at(rasters, (Rasters::Name) file.content, i, j);
       }
-    raster.write(wanted, file.path.find(".thickness") < std::string::npos ? 12 : 9);
+    AtomicFile wanted_file(wanted);
+    raster.write(wanted_file, file.path.find(".thickness") < std::string::npos ? 12 : 9);
+    wanted_file.commit();
     EXPECT_EQ(text_of(path), text_of(wanted)) << file.path;
   }
   EXPECT_EQ(remove(path.c_str()), 0);

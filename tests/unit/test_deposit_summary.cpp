@@ -48,11 +48,13 @@ TEST(DepositSummary, AtRest)
 TEST(DepositSummary, Release)
 {
   DepositSummary s = halted(0.0);
-  s.release.bulk_factor = 6.0 / 3.14159265358979323846;
+  s.bulk_factor = 6.0 / 3.14159265358979323846;
   EXPECT_TRUE(has(s.text(), "  region: null"));
   EXPECT_TRUE(has(s.text(), "  body_volume: null"));
-  s.release = {12.0, 6.25, "it's", 10.0, 1.6, 4.5, 2.0e4};
-  EXPECT_NEAR(s.release.from_cubic(), 1.6 / 1.9098593171027440 - 1.0, 1e-15);
+  s.released = {{12.0, 6.25, 0.0, 0.0, {}}, 10.0, 10.0, 4.5, 0.0, 2.0e4};
+  s.region = "it's";
+  s.bulk_factor = 1.6;
+  EXPECT_NEAR(s.from_cubic(), 1.6 / 1.9098593171027440 - 1.0, 1e-15);
   for (const char *line : {"  region: 'it''s'", "  body_volume: 10.0", "  ball_volume: 6.25",
                            "  balls: 12", "  bulk_factor: 1.6", "bulk_factor: 1.6"})
     EXPECT_TRUE(has(s.text(), line)) << line;
@@ -61,7 +63,9 @@ TEST(DepositSummary, Release)
 TEST(DepositSummary, Travel)
 {
   DepositSummary s = halted(0.0);
-  s.travel = {{1.0, 2.5, 3e-7}, 4.0, 5.0, {60.0, 17.5}, {{0.5, {30.0, 33.0}}, {0.95, {55.0, 18.25}}}};
+  s.released.front = 4.0;
+  s.released.mass = {1.0, 1.0, 0.0, 0.0, {1.0, 2.5, 3e-7}};
+  s.travel = {5.0, {60.0, 17.5}, {{0.5, {30.0, 33.0}}, {0.95, {55.0, 18.25}}}};
   s.travel.quantiles.push_back({0.99, {HUGE_VAL, HUGE_VAL}});
   for (const char *line :
        {"  top: [1.0, 2.5, 3.0e-07]", "  front: 60.0", "  reach_angle: 17.5",

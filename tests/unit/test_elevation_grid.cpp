@@ -6,6 +6,7 @@
 // The ESRI ASCII grid: what is read is what was written, a plane is a plane up to the raster's
 // edge, and a bad file is one clear line.
 
+#include "atomic_file.h"
 #include "elevation_grid.h"
 
 #include <gtest/gtest.h>
@@ -45,6 +46,13 @@ class Grid : public testing::Test {
   }
 
   std::string path(const std::string &name) const { return folder + "/" + name; }
+
+  void write(const ElevationGrid &grid, const std::string &name, int digits = 9) const
+  {
+    Slope::AtomicFile file(path(name));
+    grid.write(file, digits);
+    file.commit();
+  }
 
   ElevationGrid read(const std::string &text) const
   {
@@ -274,7 +282,7 @@ TEST_F(Grid, WhatIsWrittenIsRead)
   for (size_t k = 0; k < g.z.size(); k++) g.z[k] = std::exp(3.0 * k) / 7.0;
   g.at(3, 2) = NaN;
   g.at(0, 0) = 0.0;
-  g.write(path("b.asc"), 17);
+  write(g, "b.asc", 17);
   const ElevationGrid h = ElevationGrid::read(path("b.asc"));
   EXPECT_EQ(g.xlo, h.xlo);
   EXPECT_EQ(g.ylo, h.ylo);
@@ -299,7 +307,7 @@ TEST_F(Grid, Digits)
   for (int digits : {6, 9, 12, 15}) {
     ElevationGrid g(values.size(), 1, 0.0, 0.0, 1.0, 0.0);
     g.z = values;
-    g.write(path("b.asc"), digits);
+    write(g, "b.asc", digits);
     const ElevationGrid h = ElevationGrid::read(path("b.asc"));
     for (size_t k = 0; k < values.size(); k++)
       EXPECT_NEAR(h.z[k], values[k], 0.5001 * std::pow(10.0, 1 - digits) * std::fabs(values[k]))
@@ -312,7 +320,7 @@ TEST_F(Grid, Format)
   ElevationGrid g(2, 2, 0.5, 10.0, 0.1, 1.0 / 3.0);
   g.at(0, 1) = NaN;
   g.at(1, 0) = 0.0;
-  g.write(path("b.asc"), 4);
+  write(g, "b.asc", 4);
   std::ifstream in(path("b.asc"));
   std::stringstream text;
   text << in.rdbuf();
@@ -325,7 +333,7 @@ TEST_F(Grid, WriteErrorsLeaveNothingBehind)
 {
   ElevationGrid g(300, 300, 0.0, 0.0, 1.0, 1.0 / 3.0);
   try {
-    g.write(path("none/b.asc"));
+    write(g, "none/b.asc");
     FAIL();
   } catch (std::runtime_error &e) {
     EXPECT_EQ(e.what(), "cannot write " + path("none/b.asc") + ": No such file or directory");
@@ -333,14 +341,14 @@ TEST_F(Grid, WriteErrorsLeaveNothingBehind)
 
   // a full disk, played by a limit on the size of files: the older file survives
 
-  ElevationGrid(1, 1, 0.0, 0.0, 1.0, 5.0).write(path("b.asc"));
+  write(ElevationGrid(1, 1, 0.0, 0.0, 1.0, 5.0), "b.asc");
   signal(SIGXFSZ, SIG_IGN);
   struct rlimit before, small;
   getrlimit(RLIMIT_FSIZE, &before);
   small = before;
   small.rlim_cur = 100000;
   setrlimit(RLIMIT_FSIZE, &small);
-  EXPECT_THROW(g.write(path("b.asc")), std::runtime_error);
+  EXPECT_THROW(write(g, "b.asc"), std::runtime_error);
   setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_EQ(ElevationGrid::read(path("b.asc")).z, std::vector<double>{5.0});
 }
@@ -356,7 +364,7 @@ TEST_F(Grid, LargeRaster)
     return std::chrono::duration<double>(now() - t).count();
   };
   auto start = now();
-  g.write(path("b.asc"));
+  write(g, "b.asc");
   printf("4000 x 4000 written in %.2f s\n", since(start));
   start = now();
   const ElevationGrid h = ElevationGrid::read(path("b.asc"));

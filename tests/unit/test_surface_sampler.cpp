@@ -148,7 +148,8 @@ TEST(SurfaceSampler, wide_spacing_is_left_alone_on_almost_level_ground)
   const SurfaceBalls gentle = sample_surface(square(15.0 * R, 3.0 * R), R, plane(10.0, 0.0));
   EXPECT_EQ(gentle.base, 36);
   EXPECT_EQ(gentle.extra, 0);
-  EXPECT_GT(cover_radius(3.0 * R, R), 2.0 * R);    // what callers warn of
+  EXPECT_GT(3.0 * R, widest_spacing(R));    // what callers warn of
+  EXPECT_NEAR(cover_radius(widest_spacing(R), R) + sampling_slack(R), 2.0 * R, 1e-12 * R);
 
   const GroundHeights steep = plane(60.0, 0.0);
   const SurfaceBalls balls = sample_surface(square(15.0 * R, 3.0 * R), R, steep);

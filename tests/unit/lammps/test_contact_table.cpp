@@ -54,7 +54,7 @@ TEST(ContactTable, Laws)
   const double log_e = std::log(0.3), zeta = -log_e / std::hypot(std::acos(-1.0), log_e);
   const Slope::ContactLaw &law = t.table.law(2, 1);    // in both orders
   EXPECT_DOUBLE_EQ(law.kn, 2e6);
-  EXPECT_NEAR(law.cn(7.0), 2.0 * zeta * std::sqrt(2e6 * 7.0), 1e-3 * law.cn(7.0));
+  EXPECT_NEAR(law.normal(7.0).c, 2.0 * zeta * std::sqrt(2e6 * 7.0), 1e-3 * law.normal(7.0).c);
   EXPECT_NEAR(law.friction, std::tan(std::acos(-1.0) / 6.0), 1e-12);
   EXPECT_DOUBLE_EQ(law.rolling, 0.05);
   EXPECT_TRUE(t.table.is_exact());
@@ -72,7 +72,7 @@ TEST(ContactTable, Settings)
   EXPECT_EQ(law.rolling_factor, 1.0);
   EXPECT_EQ(law.fn_least, 0.0);
   EXPECT_EQ(law.exact, 0.0);
-  EXPECT_DOUBLE_EQ(law.cn(7.0), 100.0);
+  EXPECT_DOUBLE_EQ(law.normal(7.0).c, 100.0);
   t.settings({});    // back to what is without words
   EXPECT_TRUE(t.table.is_exact());
   EXPECT_EQ(t.table.law(1, 1).mass_factor, 1.0);
