@@ -56,6 +56,14 @@ def polygons_of(geometry):
     return [part for inner in getattr(geometry, "geoms", ()) for part in polygons_of(inner)]
 
 
+def contains(geometry, x, y):
+    """Whether points (arrays) lie in polygons."""
+    if hasattr(shapely, "contains_xy"):
+        return shapely.contains_xy(geometry, x, y)
+    from shapely import vectorized      # of shapely 1
+    return vectorized.contains(geometry, x, y)
+
+
 def edges(geometry):
     """Start and end of every edge of the polygons in a geometry, interior on the left: two arrays (number, 2)."""
     rings = [np.asarray(ring.coords)[:, :2] for part in polygons_of(geometry)

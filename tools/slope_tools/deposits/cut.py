@@ -24,9 +24,8 @@ from scipy.spatial import cKDTree
 from shapely.affinity import translate
 from shapely.geometry import Point, box
 from shapely.ops import triangulate, unary_union
-from shapely.prepared import prep
 
-from ..geometry import Lines, coverage, edges, polygons_of
+from ..geometry import Lines, contains, coverage, edges, polygons_of
 from ..survey.rasters import progress
 
 STRIP = 500_000     # parts of cells at a time
@@ -129,11 +128,11 @@ class Edge:
         """
         inwards = np.stack([-self.along[:, 1], self.along[:, 0]], axis=1) / np.sqrt(self.length2)[:, None]
         inwards, points = inwards[self.piece], self.place.T
-        drop, left, inside = np.zeros(len(z)), np.ones(len(z), bool), prep(road)
+        drop, left = np.zeros(len(z)), np.ones(len(z), bool)
         for depth in DEPTHS:
             some = np.flatnonzero(left)
-            some = some[[inside.contains(Point(at)) for at in points[some] + ACROSS * 2 * depth * inwards[some]]]
-            wide = [inside.contains(Point(at)) for at in points[some] + ACROSS * 3 * depth * inwards[some]]
+            some = some[contains(road, *(points[some] + ACROSS * 2 * depth * inwards[some]).T)]
+            wide = contains(road, *(points[some] + ACROSS * 3 * depth * inwards[some]).T)
             first, second, third = (self.ground.height(*(points[some] + k * depth * inwards[some]).T)
                                     for k in (1, 2, 3))
             hollow = np.where(wide, np.maximum(0.0, first - 2 * second + third), 0.0)
