@@ -318,6 +318,21 @@ def test_cells_that_hold_the_foot_of_a_cutting_do_not_raise_its_cut(slope_, side
     assert 0.97 < min(found) and max(found) < 1.03, found
 
 
+def test_a_lane_beside_a_cutting_has_the_edge_of_its_road():
+    """A lane of 4 m, less than two cells of 2.5 m, that touches the foot of a cutting: as in cells of 0.25 m."""
+    def taken(cell, shift, on_road):
+        x = cell * (np.arange(round(150 / cell)) + 0.5) - 75 + shift
+        z = np.tile(np.clip((x - 4) * 11.4, 0, 6), (4, 1))
+        lane, road = (box((low - shift + 75) / cell, 0, (4 - shift + 75) / cell, 4) for low in (0, -4))
+        got = cut.removed(np.full(z.shape, 1.5), cut.Ground(z), [lane], TAN30 * cell, cut.one_cell(z), 4, silent=True,
+                          surface=road if on_road else None)
+        return got.cells.sum() * cell / 4
+
+    true = taken(0.25, 0.0, True)
+    found, alone = ([taken(2.5, shift, on_road) / true for shift in np.arange(0, 2.5, 0.5)] for on_road in (True, False))
+    assert 0.95 < min(found) and max(found) < 1.05 and min(alone) < 0.85, (found, alone)
+
+
 def test_against_a_sum_over_points(monkeypatch):
     """The definition, point by point: surface - max(ground, cut), in metres, and all edges looked at; but for what the
     road's surface says of its edge."""

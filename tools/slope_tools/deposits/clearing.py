@@ -113,11 +113,14 @@ def nearest(stretches: Sequence[Stretch], x, y):
 class Cutter:
     """What lanes remove of a deposit.
 
-    deposit: thickness (m); base: the ground below it (m); angle: rise of the cut, degrees; samples: see cut.
+    deposit: thickness (m); base: the ground below it (m); angle: rise of the cut, degrees; samples: see cut; road: on
+    which they lie, in local metres; None: only themselves.
     """
 
-    def __init__(self, deposit: Raster, base: np.ndarray, angle: float, samples: int):
+    def __init__(self, deposit: Raster, base: np.ndarray, angle: float, samples: int,
+                 road: Optional[BaseGeometry] = None):
         self.deposit, self.ground, self.samples = deposit, cut.Ground(base), samples
+        self.road = road and geometry.to_index(road, deposit)
         self.cell = float(deposit.transform.a)
         self.tangent = math.tan(math.radians(angle)) * self.cell
 
@@ -130,7 +133,7 @@ class Cutter:
         """What lanes remove, together: the union of their cuts."""
         inside = [geometry.to_index(one, self.deposit) for one in areas if one.area > 0]
         return cut.removed(self.deposit.z, self.ground, inside, self.tangent, mesh or cut.one_cell(self.deposit.z),
-                           samples or self.samples, silent=True)
+                           samples or self.samples, silent=True, surface=self.road)
 
     def least(self, stretch: Stretch, lane: float) -> Place:
         """The place of a lane (width, m) on the road through a stretch where it takes least."""
@@ -172,14 +175,13 @@ class Clearing(NamedTuple):
     mesh: Optional[np.ndarray]          # m3 of the lanes together in each mesh cell
 
 
-def evaluate_clearing(run_, result, profile, axes: Sequence[Axis], width: float, road: Optional[BaseGeometry],
+def evaluate_clearing(run_, result, profile, axes: Sequence[Axis], width: float, road: BaseGeometry, drawn: bool,
                       asked: Asked, mesh: Mesh, angle: float, samples: int) -> Clearing:
     """The Clearing of a Deposit's road.
 
-    result: volume.Result; profile: along the axis; width: of the road, m; road: see find_lane_stretches; angle:
-    of the cut, degrees.
+    result: volume.Result; profile: along the axis; width: of the road, m; drawn: as a line; angle: of the cut, degrees.
     """
-    stretches = find_lane_stretches(run_.raster, axes, width, asked.blocked, road)
+    stretches = find_lane_stretches(run_.raster, axes, width, asked.blocked, None if drawn else road)
     entries = [{"from": round(one.along.low, DIGITS), "to": round(one.along.high, DIGITS),
                 "largest_thickness_on_axis": thickest(profile, one), "passable_width": round(one.passable, DIGITS),
                 "remove": result.rounded(volume)} for one, volume in zip(stretches,
@@ -191,7 +193,7 @@ def evaluate_clearing(run_, result, profile, axes: Sequence[Axis], width: float,
     areas, by_mesh = [], None
     if asked.lane is not None:
         lane = min(asked.lane, width)
-        cutter = Cutter(run_.raster, run_.base, angle, samples)
+        cutter = Cutter(run_.raster, run_.base, angle, samples, road)
         for stretch, entry in zip(stretches, entries):
             place = cutter.least(stretch, lane)
             areas.append(cutter.area(stretch, place.offset, lane))

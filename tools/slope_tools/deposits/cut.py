@@ -89,9 +89,10 @@ class Ground:
 
 
 class Edge:
-    """The road's edge: its straight pieces, points on them, and the height of the ground there."""
+    """The edge of a road, or of a lane on one (surface): its straight pieces, points on them, and the height of the
+    ground there."""
 
-    def __init__(self, road, ground, tangent):
+    def __init__(self, road, ground, tangent, surface=None):
         self.start, end = edges(road)
         self.along = end - self.start
         self.length2 = (self.along ** 2).sum(axis=1)
@@ -105,7 +106,7 @@ class Edge:
         self.points = cKDTree(points)
         self.most = self.highest(~ground.far_from_known(*self.place)) if not ground.known.all() else None
         z = ground.height(*self.place)
-        self.drop = self.rounded(road, z)
+        self.drop = self.rounded(surface or road, z)
         self.z = self.lowered(z - self.drop, np.arange(len(points)))
         self.slack = max(np.abs(np.diff(of)).max() for of in (z, self.z))
 
@@ -216,14 +217,15 @@ def one_cell(thickness):
     return SimpleNamespace(x=np.array([0.0, columns]), y=np.array([0.0, rows]), shape=(1, 1))
 
 
-def removed(thickness, ground, roads, tangent, mesh, k, silent=False):
+def removed(thickness, ground, roads, tangent, mesh, k, silent=False, surface=None):
     """What must be removed, a Removed: the union of the cuts of all roads.
 
-    roads: polygons in the grid; tangent: rise of the cut (m) per cell of distance; silent: no progress is shown.
+    roads: polygons in the grid; tangent: rise of the cut (m) per cell of distance; silent: no progress is shown;
+    surface: the road whose lanes the roads are, as polygons; None: they are whole ones.
     """
     if not roads:
         return Removed(np.zeros(thickness.shape), np.zeros(mesh.shape), np.zeros(mesh.shape), 0.0, 0.0)
-    work = _Work(thickness, ground, roads, tangent, mesh, k)
+    work = _Work(thickness, ground, roads, tangent, mesh, k, surface)
     at = work.near()
     rows = np.flatnonzero(at.any(axis=1))
     step = max(1, STRIP // (k * k * at.shape[1]))
@@ -236,10 +238,10 @@ def removed(thickness, ground, roads, tangent, mesh, k, silent=False):
 
 
 class _Work:
-    def __init__(self, thickness, ground, roads, tangent, mesh, k):
+    def __init__(self, thickness, ground, roads, tangent, mesh, k, surface):
         self.t, self.ground, self.tangent = thickness, ground, tangent
         self.road = roads[0] if len(roads) == 1 else unary_union(roads)
-        self.edges = [Edge(road, ground, tangent) for road in roads]
+        self.edges = [Edge(road, ground, tangent, surface) for road in roads]
         self.all, self.bent = self.kinds(*ground.bounds())
         self.lines = [Lines(n, k, lines) for n, lines in zip(thickness.shape, (mesh.y, mesh.x))]
         self.cells = np.zeros(thickness.shape)

@@ -83,7 +83,7 @@ def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[Any], 
     roads.check_lane(asked.lane, width)
     result = evaluate_removal(run, road, wanted.cut_angle, mesh, wanted.samples)
     profile = profile_road(axes, run, result.removed, asked, road if wanted.axis else None)
-    cleared = clearing.evaluate_clearing(run, result, profile, axes, width, road if given.line is None else None, asked,
+    cleared = clearing.evaluate_clearing(run, result, profile, axes, width, road, given.line is not None, asked,
                                          mesh, wanted.cut_angle, wanted.samples)
     summary = totals(wanted, run, mesh, result, profile, source)
     summary.update(clearing=cleared.totals, stretches=cleared.entries, by_10_m=by_chainage(run, road, axes),
