@@ -329,7 +329,8 @@ def test_a_lane_beside_a_cutting_has_the_edge_of_its_road():
         return got.cells.sum() * cell / 4
 
     true = taken(0.25, 0.0, True)
-    found, alone = ([taken(2.5, shift, on_road) / true for shift in np.arange(0, 2.5, 0.5)] for on_road in (True, False))
+    found, alone = ([taken(2.5, shift, on_road) / true for shift in np.arange(0, 2.5, 0.5)]
+                    for on_road in (True, False))
     assert 0.95 < min(found) and max(found) < 1.05 and min(alone) < 0.85, (found, alone)
 
 

@@ -1,6 +1,6 @@
 """What the runs of a study say together: what is read of them (read_study), and the Outcome that is evaluated from it.
 
-No file of the study is written here, and nothing told: files, console and pages are made of an Outcome side by side
+Nothing is told here, nor written but what is kept for the next time: files, console and pages are made side by side
 (files, console; report of its Study), by results and commands/study.
 """
 from dataclasses import dataclass, replace
