@@ -45,17 +45,20 @@ class Body(NamedTuple):
 
         What lies between two bodies is neither's fall line.
         """
-        parts, _ = label(self.depth > 0, np.ones((3, 3)))
-        volumes = np.bincount(parts.ravel(), self.depth.ravel())
-        return np.where(parts == volumes.argmax(), self.depth, 0.0)
+        labels, volumes = self._label_parts()
+        return np.where(labels == volumes.argmax(), self.depth, 0.0)
 
     @property
     def parts(self) -> List["Body"]:
         """The parts that do not touch, each alone, the largest first; without those that hold less than SIDE."""
-        labels, _ = label(self.depth > 0, np.ones((3, 3)))
-        volumes = np.bincount(labels.ravel(), self.depth.ravel())       # a scar may have thousands
+        labels, volumes = self._label_parts()       # a scar may have thousands
         large = [k for k in np.argsort(-volumes, kind="stable").tolist() if volumes[k] >= SIDE * volumes.sum()]
         return [self._replace(depth=np.where(labels == k, self.depth, 0.0)) for k in large]
+
+    def _label_parts(self) -> Tuple[np.ndarray, np.ndarray]:
+        """Number of the part of each cell, 0 beside all, and the depths (m) of each part together."""
+        labels, _ = label(self.depth > 0, np.ones((3, 3)))
+        return labels, np.bincount(labels.ravel(), self.depth.ravel())
 
     def beside(self) -> List[Finding]:
         """That the fall path is that of one body of several."""
